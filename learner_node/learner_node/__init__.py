@@ -1,0 +1,1 @@
+"""Exploitation-oriented learning of the waist correction."""

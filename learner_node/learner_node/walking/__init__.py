@@ -1,0 +1,1 @@
+"""XoL applied to the waist trajectory of a biped (Section 4)."""

@@ -1,0 +1,154 @@
+"""Constants of the walking task (Section 4), with the readings the paper leaves open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from learner_node.xol.settings import XolSettings
+from msgs_json.settings import SettingsError, check_ranges, section, setting
+
+INPUT_NAMES = (
+    "right_support",
+    "double_support",
+    "waist_x",
+    "waist_y",
+    "zmp_error_x",
+    "zmp_error_y",
+    "waist_acceleration_x",
+    "waist_acceleration_y",
+)
+N_DISCRETE = 2
+N_CONTINUOUS = len(INPUT_NAMES) - N_DISCRETE
+
+
+@dataclass(frozen=True)
+class ActionSettings:
+    """The corrections to choose from (Section 4.2)."""
+
+    limit_m: float = setting(
+        0.024, "m", "largest correction dx, dy", above=0.0, upper=0.2
+    )
+    alternatives: int = setting(
+        15,
+        "",
+        "Na: equally spaced corrections from -limit to limit",
+        lower=2,
+        upper=1001,
+    )
+    hold_ticks: int = setting(
+        1,
+        "learning ticks",
+        "a decision is held this long (20 ms each)",
+        lower=1,
+        upper=50,
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class InputSettings:
+    """Widths of the basis functions, which scale the continuous inputs (4.1)."""
+
+    waist_radius_m: float = setting(0.03, "m", "waist position", above=0.0)
+    zmp_error_radius_m: float = setting(0.03, "m", "ZMP error", above=0.0)
+    acceleration_radius_m_s2: float = setting(
+        0.9, "m/s^2", "waist acceleration", above=0.0
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """One width per continuous input, in the order of INPUT_NAMES."""
+        return (
+            (self.waist_radius_m,) * 2
+            + (self.zmp_error_radius_m,) * 2
+            + (self.acceleration_radius_m_s2,) * 2
+        )
+
+
+@dataclass(frozen=True)
+class CostSettings:
+    """T_err (eq. (2)) and its running estimate (eqs. (3), (4))."""
+
+    zmp_limit_m: float = setting(0.065, "m", "zmpLimit of eq. (2)", above=0.0)
+    torque_reading: str = setting(
+        "in_root",
+        "",
+        "whether the torque integral shares the square root with the tracking "
+        "integral or stands outside it",
+        choices=("in_root", "outside_root"),
+    )
+    first_estimate_factor: float = setting(
+        1.05, "", "T_err-hat starts at this multiple of T_err (eq. (3))", above=0.0
+    )
+    tolerance: float = setting(
+        0.001,
+        "",
+        "T_err counts as below T_err-hat up to this relative excess; without it a "
+        "deterministic walk can never succeed again",
+        lower=0.0,
+        upper=1.0,
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class RewardSettings:
+    """Rewards (Table 2) and penalties (Table 1)."""
+
+    success: float = setting(10_000.0, "", "RWDforSuc", above=0.0)
+    goal: float = setting(10.0, "", "RWDforGD", lower=0.0)
+    penalty: float = setting(10.0, "", "pnlty of every type of penalty", above=0.0)
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class ScheduleSettings:
+    """The learning schedule (Section 5.1)."""
+
+    successes_per_subtask: int = setting(
+        15, "successes", "LT: RWDforSuc received before t_f is extended", lower=1
+    )
+    first_target_s: float = setting(
+        1.875, "s", "target walking time of the first subtask (T_step)", above=0.0
+    )
+    extension_s: float = setting(
+        0.9375, "s", "how much later the next subtask ends (T_step / 2)", above=0.0
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class LearnerSettings:
+    """All of the learner of the walking task."""
+
+    xol: XolSettings = section(XolSettings)
+    action: ActionSettings = section(ActionSettings)
+    inputs: InputSettings = section(InputSettings)
+    cost: CostSettings = section(CostSettings)
+    rewards: RewardSettings = section(RewardSettings)
+    schedule: ScheduleSettings = section(ScheduleSettings)
+
+    def __post_init__(self) -> None:
+        """Refuse radii in two places: they are set in `inputs`, by name and unit."""
+        if self.xol.states.radii:
+            raise SettingsError(
+                "xol.states.radii",
+                list(self.xol.states.radii),
+                "must be empty here; the widths are set in the section inputs",
+            )

@@ -1,0 +1,345 @@
+"""The overall algorithm of Section 3.6, step by step, for one stream of inputs.
+
+The caller owns the environment. Per epoch t it calls, in the paper's own order,
+`choose` (2(c)i-iii), then, after the environment moved, any of `reward` (2(c)v) and
+`penalise` (2(c)vi), and `advance` (2(c)iv, vii, viii) to go on or nothing to stop.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learner_node.xol import penalties, selection
+from learner_node.xol.queue import DecisionQueue
+from learner_node.xol.rules import ActionSpace, RuleTable
+from learner_node.xol.settings import XolSettings
+from learner_node.xol.states import NO_STATE, BasisStates
+
+
+class XolAgent:
+    """Online profit sharing with penalty avoidance and fixed-mode states."""
+
+    def __init__(
+        self,
+        settings: XolSettings,
+        space: ActionSpace,
+        n_discrete: int,
+        n_continuous: int,
+        penalty_values: tuple[float, ...],
+        rng: np.random.Generator,
+    ) -> None:
+        """Start with an empty memory (step 1).
+
+        Args:
+            settings: the constants of Section 3.
+            space: components and alternatives of the action.
+            n_discrete: leading inputs that are discrete.
+            n_continuous: inputs after them; Ns = n_discrete + n_continuous.
+            penalty_values: pnlty per type, highest priority first; the last one is
+                the additional penalty p_Np for moving to a penalty state.
+            rng: source of every random choice.
+        """
+        if len(penalty_values) < 2:
+            raise ValueError("penalty_values: at least one penalty and p_Np are needed")
+        self.settings = settings
+        self.space = space
+        self.penalty_values = penalty_values
+        self.rng = rng
+        self.states = BasisStates(settings.states, n_discrete, n_continuous)
+        self.rules = RuleTable(
+            ActionSpace(space.n_components, space.n_alternatives, settings.decomposed),
+            len(penalty_values),
+        )
+        self.queue = DecisionQueue(settings.queue_length, self.rules.space.table_shape)
+        self.episode = 0
+        self.state = NO_STATE
+        self._chosen = np.zeros(self.rules.space.table_shape[0], dtype=np.int64)
+
+    # -- one episode -------------------------------------------------------------
+
+    def begin_episode(self, inputs: NDArray[np.float64]) -> None:
+        """Take the initial state and empty the queue (2(a), 2(b))."""
+        self.episode += 1
+        self.queue.clear()
+        self.state = self._locate(inputs)
+
+    def choose(self) -> NDArray[np.int64]:
+        """Select an action by Section 3.5 and put its rule in the queue (2(c)i-iii).
+
+        Returns:
+            (Nm,) index of the chosen alternative per component.
+        """
+        k = self.state
+        rules = self.rules
+        draws = self.rng.random(len(self._chosen))
+        if rules.penalty_state[k]:
+            selection.choose_ranked(k, draws, rules.p, rules.avoided, self._chosen)
+        elif rules.fixed[k]:
+            selection.choose_greedy(k, rules.q, rules.p, rules.avoided, self._chosen)
+        else:
+            selection.choose_roulette(
+                k,
+                draws,
+                rules.q,
+                rules.avoided,
+                rules.n_penalties,
+                self.settings.base_weight,
+                self._chosen,
+            )
+        if penalties.count_selection(
+            k, self._chosen, self.episode, rules.selections, rules.last_episode
+        ):
+            self._judge(k)
+        self.queue.push(k, self._chosen)
+        return rules.space.alternatives_of(self._chosen)
+
+    def advance(self, inputs: NDArray[np.float64]) -> None:
+        """Move to the next state, discount, and pay p_Np on a penalty state.
+
+        Steps 2(c)iv, vi for l = Np, vii and viii.
+        """
+        previous = self.state
+        following = self._locate(inputs)
+        if following != previous and self.rules.penalty_state[following]:
+            self._penalise_transition(age=0)
+        self.queue.decay(self.settings.discount)
+        self.state = following
+
+    def reward(self, value: float, counts: bool) -> None:
+        """Reinforce every sub-rule in the queue (2(c)v) and fix states (Strategy 1).
+
+        Args:
+            value: rwd.
+            counts: the reward raises TUC, once per state.
+        """
+        rules = self.rules
+        queue = self.queue
+        newest_first = (queue.head - 1 - np.arange(queue.filled)) % queue.length
+        states = queue.states[newest_first]
+        alternatives = queue.alternatives[newest_first]
+        payable = queue.live[newest_first] & ~rules.fixed[states, None]
+        for i in range(alternatives.shape[1]):
+            paid = payable[:, i]
+            k, j = states[paid], alternatives[paid, i]
+            rules.q[k, i, j] += value * queue.eligibility[k, i, j]
+        if counts:
+            visited = np.unique(states)
+            rules.rewards[visited] += 1
+            mode = self.settings.fixed_mode
+            if mode.strategy == "strategy1":
+                enough = rules.rewards[visited] >= mode.rewards_to_fix
+                self._fix(visited[enough])
+
+    def penalise(self, penalty: int) -> None:
+        """Apply p_l (0-based l < Np - 1) and the penalty rule decision (2(c)vi)."""
+        if not 0 <= penalty < len(self.penalty_values) - 1:
+            raise ValueError(
+                f"penalty = {penalty}: must be between 0 and "
+                f"{len(self.penalty_values) - 2}"
+            )
+        self._pay_penalty(
+            penalty, 0, self.settings.penalty_reach, self.settings.failure_reach
+        )
+        self._release_fixed_states()
+        self._propagate_penalty_states()
+
+    def finish_episode(self) -> None:
+        """Let the basis functions age; unrewarded, unvisited ones are forgotten.
+
+        The paper's life_k (2(c)vii) is read as episodes: counted in decisions, a
+        state would die within the episode that made it.
+        """
+        self.queue.clear()
+        self.state = NO_STATE
+        remaining = self.states.age(kept=self.rules.rewards[: self.states.count] > 0)
+        if remaining is not None:
+            self.rules.keep(remaining)
+
+    def finish_subtask(self) -> None:
+        """Fix every rewarded state that is no penalty state (Strategy 2, 2(c)viii)."""
+        if self.settings.fixed_mode.strategy == "strategy2":
+            count = self.states.count
+            self._fix(np.flatnonzero(self.rules.rewards[:count] > 0))
+
+    # -- greedy use --------------------------------------------------------------
+
+    def greedy(self, inputs: NDArray[np.float64]) -> NDArray[np.int64] | None:
+        """Return the greedy action without learning anything, None where no state is.
+
+        Nothing of the agent changes: no state, count or random number.
+        """
+        k = self.states.find(inputs, create=False)
+        if k == NO_STATE:
+            return None
+        rules = self.rules
+        selection.choose_greedy(k, rules.q, rules.p, rules.avoided, self._chosen)
+        return self.rules.space.alternatives_of(self._chosen)
+
+    # -- figures -----------------------------------------------------------------
+
+    @property
+    def basis_states(self) -> int:
+        """NB, the number of states."""
+        return self.states.count
+
+    @property
+    def fixed_states(self) -> int:
+        """Number of states in fixed mode."""
+        return int(self.rules.fixed[: self.states.count].sum())
+
+    @property
+    def penalty_states(self) -> int:
+        """Number of penalty states."""
+        return int(self.rules.penalty_state[: self.states.count].sum())
+
+    # -- checkpoint --------------------------------------------------------------
+
+    def memory(self) -> dict[str, NDArray[Any]]:
+        """Return all that was learned, as arrays; valid between episodes."""
+        count = self.states.count
+        arrays = {
+            "state_discrete": self.states.discrete[:count],
+            "state_centers": self.states.centers[:count],
+            "state_life": self.states.life[:count],
+            "episode": np.array(self.episode, dtype=np.int64),
+        }
+        for name in RuleTable.ARRAYS:
+            arrays[name] = getattr(self.rules, name)[:count]
+        return arrays
+
+    def restore(self, memory: dict[str, NDArray[Any]]) -> None:
+        """Take over what `memory` returned.
+
+        Raises:
+            ValueError: an array is missing or its shape belongs to another problem.
+        """
+        current = self.memory()
+        count = len(memory.get("state_life", ()))
+        for name, own in current.items():
+            if name not in memory:
+                raise ValueError(f"memory: array {name} is missing")
+            expected = own.shape if name == "episode" else (count, *own.shape[1:])
+            given = memory[name]
+            if given.shape != expected or given.dtype != own.dtype:
+                raise ValueError(
+                    f"memory: array {name} is {given.dtype}{given.shape}, "
+                    f"this problem needs {own.dtype}{expected}"
+                )
+        self.states.reserve(count)
+        self._make_room()
+        self.states.count = count
+        self.states.discrete[:count] = memory["state_discrete"]
+        self.states.centers[:count] = memory["state_centers"]
+        self.states.life[:count] = memory["state_life"]
+        for name in RuleTable.ARRAYS:
+            getattr(self.rules, name)[:count] = memory[name]
+        self.rules.clear_from(count)
+        self.episode = int(memory["episode"])
+        self.queue.clear()
+        self.state = NO_STATE
+
+    # -- inner steps -------------------------------------------------------------
+
+    def _locate(self, inputs: NDArray[np.float64]) -> int:
+        k = self.states.find(inputs, create=True)
+        self._make_room()
+        return k
+
+    def _make_room(self) -> None:
+        capacity = self.states.capacity
+        self.rules.grow(capacity)
+        self.queue.grow(capacity)
+
+    def _fix(self, states: NDArray[np.int64]) -> None:
+        self.rules.fixed[states] = ~self.rules.penalty_state[states]
+
+    def _pay_penalty(
+        self, penalty: int, newest: int, p_reach: int, failure_reach: int
+    ) -> None:
+        """Raise P and the failure counts of decisions from the age `newest` back."""
+        queue, rules = self.queue, self.rules
+        penalties.add_penalty(
+            penalty,
+            self.penalty_values[penalty],
+            newest,
+            min(newest + p_reach, queue.filled),
+            queue.head,
+            queue.states,
+            queue.alternatives,
+            queue.live,
+            queue.eligibility,
+            rules.p,
+        )
+        penalties.count_failures(
+            penalty,
+            newest,
+            min(newest + failure_reach, queue.filled),
+            self.episode,
+            queue.head,
+            queue.states,
+            queue.alternatives,
+            rules.failures,
+            rules.last_failure,
+        )
+
+    def _penalise_transition(self, age: int) -> None:
+        """Pay p_Np to the decision of this age, which led to a penalty state."""
+        self._pay_penalty(len(self.penalty_values) - 1, age, 1, 1)
+        self._judge(self._state_of_age(age))
+
+    def _judge(self, k: int) -> bool:
+        """Judge state k anew; return whether it has just become a penalty state."""
+        rules = self.rules
+        before = bool(rules.penalty_state[k])
+        rules.penalty_state[k] = penalties.judge_state(
+            k,
+            rules.failures,
+            rules.selections,
+            self.settings.minimum_selections,
+            self.settings.failure_threshold,
+            rules.avoided,
+        )
+        if rules.penalty_state[k]:
+            rules.fixed[k] = False
+        return bool(rules.penalty_state[k]) and not before
+
+    def _propagate_penalty_states(self) -> None:
+        """Penalty rule decision (PRD): follow new penalty states back in the queue.
+
+        A rule that leads to a new penalty state is penalised with p_Np, which can
+        make its own state a penalty state, and so on. A state that only leads to
+        itself is passed over.
+        """
+        new = {
+            k
+            for k in self._states_of_ages(self.settings.failure_reach)
+            if self._judge(k)
+        }
+        for age in range(self.queue.filled - 1):
+            k, origin = self._state_of_age(age), self._state_of_age(age + 1)
+            if k in new and origin != k:
+                known = bool(self.rules.penalty_state[origin])
+                self._penalise_transition(age + 1)
+                if self.rules.penalty_state[origin] and not known:
+                    new.add(origin)
+
+    def _release_fixed_states(self) -> None:
+        """Return up to three fixed states ahead of the penalty to normal mode."""
+        mode = self.settings.fixed_mode
+        rules = self.rules
+        reach = self.queue.filled if mode.release == "nearest" else mode.released_states
+        nearest_first = self._states_of_ages(reach)
+        fixed = [k for k in nearest_first if rules.fixed[k]][: mode.released_states]
+        rules.fixed[fixed] = False
+        rules.rewards[fixed] = 0
+
+    def _state_of_age(self, age: int) -> int:
+        return int(self.queue.states[(self.queue.head - 1 - age) % self.queue.length])
+
+    def _states_of_ages(self, reach: int) -> list[int]:
+        """Distinct states of the last `reach` decisions, newest first."""
+        ages = range(min(reach, self.queue.filled))
+        return list(dict.fromkeys(self._state_of_age(age) for age in ages))

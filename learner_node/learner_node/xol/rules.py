@@ -1,0 +1,124 @@
+"""Rules and sub-rules: the weights Q, P and the counters behind penalty decisions.
+
+With decomposition (Section 3.4) a rule (state, action) is a set of sub-rules, one per
+action component, and every table is NB x Nm x Na. The undecomposed form, NB x Na^Nm,
+is the same code with one component whose alternatives are all the joint actions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learner_node.xol.states import doubled
+
+_FIRST_CAPACITY = 64
+
+
+@dataclass(frozen=True)
+class ActionSpace:
+    """Nm components with Na alternatives each, seen by the tables as sub-rules."""
+
+    n_components: int
+    n_alternatives: int
+    decomposed: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse spaces without a choice."""
+        if self.n_components < 1:
+            raise ValueError(f"n_components = {self.n_components}: must be at least 1")
+        if self.n_alternatives < 2:
+            raise ValueError(
+                f"n_alternatives = {self.n_alternatives}: must be at least 2"
+            )
+
+    @property
+    def table_shape(self) -> tuple[int, int]:
+        """(components, alternatives) of the tables."""
+        if self.decomposed:
+            return self.n_components, self.n_alternatives
+        return 1, self.n_alternatives**self.n_components
+
+    def alternatives_of(self, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the (Nm,) alternatives that the chosen sub-rules stand for."""
+        if self.decomposed:
+            return chosen.copy()
+        digits = np.unravel_index(
+            int(chosen[0]), (self.n_alternatives,) * self.n_components
+        )
+        return np.array(digits, dtype=np.int64)
+
+
+class RuleTable:
+    """Per state and sub-rule: weights, eligibility and selection/failure counts.
+
+    Arrays (capacity rows, the first `NB` in use; I, J = table_shape):
+        q: (., I, J) weight Q of profit sharing.
+        p: (., Np, I, J) penalty weight P per penalty type.
+        failures: (., Np, I, J) episodes in which the sub-rule led to the penalty.
+        selections: (., I, J) episodes in which the sub-rule was chosen.
+        last_episode: (., I, J) number of the last episode in which it was chosen.
+        last_failure: (., Np, I, J) last episode in which a failure was counted.
+        rewards: (.,) TUC, rewards since the state was last released.
+        fixed: (.,) state is in fixed mode.
+        penalty_state: (.,) all alternatives of some component are penalty rules.
+        avoided: (., I, J) penalty types that the sub-rule avoids, see `judge_state`.
+    """
+
+    # What a checkpoint holds, and what moves when states are forgotten.
+    ARRAYS = (
+        "q",
+        "p",
+        "failures",
+        "selections",
+        "last_episode",
+        "last_failure",
+        "rewards",
+        "fixed",
+        "penalty_state",
+        "avoided",
+    )
+
+    def __init__(self, space: ActionSpace, n_penalties: int) -> None:
+        """Start with all weights and counters zero (Section 3.6, step 1)."""
+        shape = space.table_shape
+        rows = _FIRST_CAPACITY
+        self.space = space
+        self.n_penalties = n_penalties
+        self.q = np.zeros((rows, *shape))
+        self.p = np.zeros((rows, n_penalties, *shape))
+        self.failures = np.zeros((rows, n_penalties, *shape), dtype=np.int64)
+        self.selections = np.zeros((rows, *shape), dtype=np.int64)
+        self.last_episode = np.zeros((rows, *shape), dtype=np.int64)
+        self.last_failure = np.zeros((rows, n_penalties, *shape), dtype=np.int64)
+        self.rewards = np.zeros(rows, dtype=np.int64)
+        self.fixed = np.zeros(rows, dtype=np.bool_)
+        self.penalty_state = np.zeros(rows, dtype=np.bool_)
+        self.avoided = np.full((rows, *shape), n_penalties, dtype=np.int64)
+
+    def grow(self, capacity: int) -> None:
+        """Make room for at least `capacity` states."""
+        while len(self.rewards) < capacity:
+            rows = len(self.rewards)
+            for name in self.ARRAYS:
+                setattr(self, name, doubled(getattr(self, name)))
+            self.clear_from(rows)
+
+    def keep(self, remaining: NDArray[np.int64]) -> None:
+        """Keep the given states, in order; the rest loses all it had learned."""
+        n = len(remaining)
+        for name in self.ARRAYS:
+            array = getattr(self, name)
+            array[:n] = array[remaining]
+        self.clear_from(n)
+
+    def clear_from(self, row: int) -> None:
+        """Make the rows from `row` on as if never used."""
+        for name in self.ARRAYS:
+            getattr(self, name)[row:] = self.n_penalties if name == "avoided" else 0
+
+    def bytes_per_state(self) -> int:
+        """Memory of one state in these tables."""
+        return sum(getattr(self, name)[0].nbytes for name in self.ARRAYS)

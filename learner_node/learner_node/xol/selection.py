@@ -1,0 +1,94 @@
+"""Action selection (Section 3.5): roulette, greedy, or ranking by penalty.
+
+All three fill `chosen` (I,) with one alternative per component, for state k of the rule
+table. `avoided` says how many penalty types a sub-rule avoids (see `judge_state`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+
+@njit(cache=True)
+def choose_roulette(
+    k: int,
+    draws: NDArray,
+    q: NDArray,
+    avoided: NDArray,
+    n_penalties: int,
+    base_weight: float,
+    chosen: NDArray,
+) -> None:
+    """Choose among non-penalty sub-rules with probability ~ Q + base weight.
+
+    `draws` (I,) are uniform random numbers in [0, 1). For states that are neither
+    fixed nor penalty states, so that every component has a candidate.
+    """
+    for i in range(chosen.shape[0]):
+        total = 0.0
+        for j in range(q.shape[2]):
+            if avoided[k, i, j] == n_penalties:
+                total += q[k, i, j] + base_weight
+        mark = draws[i] * total
+        for j in range(q.shape[2]):
+            if avoided[k, i, j] == n_penalties:
+                # The last candidate stands where rounding leaves the mark beyond it.
+                chosen[i] = j
+                mark -= q[k, i, j] + base_weight
+                if mark < 0.0:
+                    break
+
+
+@njit(cache=True)
+def choose_greedy(
+    k: int, q: NDArray, p: NDArray, avoided: NDArray, chosen: NDArray
+) -> None:
+    """Choose the largest Q among the sub-rules that avoid the most penalties.
+
+    Ties go to the smaller summed P, then to the alternative nearest the middle.
+    """
+    alternatives = q.shape[2]
+    middle = 0.5 * (alternatives - 1)
+    for i in range(chosen.shape[0]):
+        best = (-1.0, 0.0, 0.0, 0.0)
+        for j in range(alternatives):
+            candidate = (
+                float(avoided[k, i, j]),
+                q[k, i, j],
+                -p[k, :, i, j].sum(),
+                -abs(j - middle),
+            )
+            if candidate > best:
+                best = candidate
+                chosen[i] = j
+
+
+@njit(cache=True)
+def choose_ranked(
+    k: int, draws: NDArray, p: NDArray, avoided: NDArray, chosen: NDArray
+) -> None:
+    """Choose in a penalty state by rank of the summed P, smallest first.
+
+    Per component, the candidates are the last non-empty Abar_i(l); with none left
+    even for the highest priority, all alternatives are equally likely. The candidate
+    of rank r among n is taken with probability 2 (n - r + 1) / (n (n + 1)).
+    """
+    alternatives = p.shape[3]
+    for i in range(chosen.shape[0]):
+        most = avoided[k, i].max()
+        if most == 0:
+            chosen[i] = min(int(draws[i] * alternatives), alternatives - 1)
+            continue
+        candidates = np.flatnonzero(avoided[k, i] == most)
+        penalty = p[k, :, i, :].sum(axis=0)[candidates]
+        # Mergesort is stable: equal penalties keep the order of the alternatives.
+        ranked = candidates[np.argsort(penalty, kind="mergesort")]
+        n = len(ranked)
+        mark = draws[i] * (n * (n + 1) // 2)
+        for place in range(n):
+            chosen[i] = ranked[place]
+            mark -= n - place
+            if mark < 0.0:
+                break

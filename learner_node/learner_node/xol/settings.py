@@ -1,0 +1,115 @@
+"""Constants of the learner (Sections 2 and 3), with the readings the paper leaves open."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from msgs_json.settings import SettingsError, check_ranges, section, setting
+
+
+@dataclass(frozen=True)
+class StateSettings:
+    """How continuous inputs become discrete states (Section 2, [12, 18])."""
+
+    basis: str = setting(
+        "gaussian",
+        "",
+        "shape of the states: Gaussian bumps made where needed, or a uniform grid",
+        choices=("gaussian", "uniform"),
+    )
+    radii: tuple[float, ...] = setting(
+        (), "", "width of a basis function per continuous input, in its unit", above=0.0
+    )
+    activation_threshold: float = setting(
+        math.exp(-0.5),
+        "",
+        "a new Gaussian state is made where no existing one is this active",
+        above=0.0,
+        upper=1.0,
+    )
+    life_episodes: int = setting(
+        100, "episodes", "an unrewarded state unvisited this long is forgotten", lower=1
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class FixedModeSettings:
+    """When a state becomes fixed, and when it is released (Section 3.3)."""
+
+    strategy: str = setting(
+        "strategy1",
+        "",
+        "strategy1: after K rewards; strategy2: at the end of a subtask; none: never",
+        choices=("strategy1", "strategy2", "none"),
+    )
+    rewards_to_fix: int = setting(
+        15, "rewards", "K of Strategy 1: rewards after which a state is fixed", lower=1
+    )
+    released_states: int = setting(
+        3, "states", "how many fixed states ahead of a penalty are released", lower=0
+    )
+    release: str = setting(
+        "last_decisions",
+        "",
+        "released are the fixed states among the last decisions, or the nearest "
+        "fixed states within the queue",
+        choices=("last_decisions", "nearest"),
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class XolSettings:
+    """Constants of online profit sharing with penalty avoidance (Section 3)."""
+
+    discount: float = setting(
+        0.98, "per decision", "gamma of the eligibility trace", above=0.0, upper=1.0
+    )
+    queue_length: int = setting(
+        150, "decisions", "decisions that a reward reaches back (Section 3.2)", lower=1
+    )
+    penalty_reach: int = setting(
+        3, "decisions", "decisions whose penalty weight P grows by eq. (1)", lower=1
+    )
+    failure_reach: int = setting(
+        40,
+        "decisions",
+        "decisions whose failure count a penalty raises; must outlast the plant's lag",
+        lower=1,
+    )
+    minimum_selections: int = setting(
+        7, "episodes", "N0: selections before a sub-rule may be a penalty rule", lower=1
+    )
+    failure_threshold: float = setting(
+        0.5, "", "lambda: failure rate above which a sub-rule is a penalty rule",
+        lower=0.0, upper=1.0,
+    )  # fmt: skip
+    base_weight: float = setting(
+        100.0,
+        "",
+        "added to every Q in the roulette, so that the first reward does not lock in",
+        above=0.0,
+    )
+    decomposed: bool = setting(
+        True, "", "sub-rules per component (Section 3.4) instead of joint rules"
+    )
+    states: StateSettings = section(StateSettings)
+    fixed_mode: FixedModeSettings = section(FixedModeSettings)
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+        if self.failure_reach > self.queue_length:
+            raise SettingsError(
+                "failure_reach",
+                self.failure_reach,
+                f"must be at most queue_length = {self.queue_length}",
+            )

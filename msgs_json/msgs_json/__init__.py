@@ -1,0 +1,1 @@
+"""Contracts between the nodes: topic names, QoS and typed JSON payloads."""

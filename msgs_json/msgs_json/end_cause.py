@@ -1,0 +1,28 @@
+"""Why a walk ended: one word for logs, results and penalties alike."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class EndCause(str, Enum):
+    """Reasons for an episode's end.
+
+    The first is success. The next two are the penalties of Table 1. The `ik_` and
+    `torque_` ones are the further failures that Section 4 names. The last three mean
+    that the physics itself can no longer be trusted.
+    """
+
+    COMPLETED = "completed"
+    ZMP_ERROR = "zmp_error"
+    JOINT_VELOCITY = "joint_velocity"
+    IK_UNREACHABLE = "ik_unreachable"
+    IK_JOINT_LIMIT = "ik_joint_limit"
+    TORQUE_SATURATION = "torque_saturation"
+    FEET_UNLOADED = "feet_unloaded"
+    FOOT_THROUGH_FLOOR = "foot_through_floor"
+    PHYSICS_NAN = "physics_nan"
+
+    def __str__(self) -> str:
+        """Return the word itself."""
+        return self.value

@@ -1,0 +1,58 @@
+"""How an episode ended, what it cost and what the learner got for it."""
+
+from __future__ import annotations
+
+import msgspec
+
+from msgs_json.end_cause import EndCause
+
+
+class CostTerms(msgspec.Struct, frozen=True, kw_only=True):
+    """The six terms of T_err, eq. (2), in the order of the paper; they add up to it."""
+
+    zmp: float
+    final_zmp: float
+    joint_tracking: float
+    joint_torque: float
+    final_joint_position: float
+    final_joint_velocity: float
+
+    @property
+    def total(self) -> float:
+        """T_err."""
+        return (
+            self.zmp
+            + self.final_zmp
+            + self.joint_tracking
+            + self.joint_torque
+            + self.final_joint_position
+            + self.final_joint_velocity
+        )
+
+
+class EpisodeResult(msgspec.Struct, frozen=True, kw_only=True):
+    """One walk, from standing to its end."""
+
+    episode: int
+    end_cause: EndCause
+    control_ticks: int
+    """Control ticks walked."""
+    target_ticks: int
+    """Control ticks to walk for success."""
+    peak_zmp_error_m: float
+    peak_joint_velocity_rad_s: float
+    cost: CostTerms | None
+    """Terms of T_err; None before the first control tick."""
+    t_err_estimate: float | None
+    """T_err-hat that T_err was compared with; None the first time and on failure."""
+    reward: float
+    """rwd of Table 2, or 0."""
+    subtask: int
+    """0-based place in the learning schedule."""
+    schedule_complete: bool
+    """The last subtask has been passed, now or before."""
+
+    @property
+    def completed(self) -> bool:
+        """The walk reached its target time."""
+        return self.end_cause is EndCause.COMPLETED

@@ -1,0 +1,19 @@
+"""Integer time: control ticks of 2 ms, learning ticks of 20 ms (paper, Section 4)."""
+
+from __future__ import annotations
+
+CONTROL_PERIOD_US = 2_000
+TICKS_PER_LEARNING_TICK = 10
+CONTROL_PERIOD_S = CONTROL_PERIOD_US * 1e-6
+LEARNING_PERIOD_US = CONTROL_PERIOD_US * TICKS_PER_LEARNING_TICK
+LEARNING_PERIOD_S = LEARNING_PERIOD_US * 1e-6
+
+
+def seconds(control_ticks: int) -> float:
+    """Return the time of a control tick [s]."""
+    return control_ticks * CONTROL_PERIOD_US * 1e-6
+
+
+def microseconds(duration_s: float) -> int:
+    """Return a duration in whole microseconds, the unit in which events are compared."""
+    return round(duration_s * 1e6)

@@ -1,0 +1,1 @@
+"""Wiring: presets, the in-process walk, training and the command line."""

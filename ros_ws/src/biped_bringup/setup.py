@@ -1,0 +1,21 @@
+from setuptools import find_packages, setup
+
+NAME = "biped_bringup"
+
+setup(
+    name=NAME,
+    version="0.1.0",
+    description="Wiring of the biped: presets, walks, training and the command line",
+    license="Apache-2.0",
+    maintainer="The biped project authors",
+    maintainer_email="maintainers@example.org",
+    packages=find_packages(exclude=["test"]),
+    package_data={NAME: ["py.typed", "*.yaml", "*/*.yaml"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (f"share/{NAME}", ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    zip_safe=False,
+    entry_points={"console_scripts": ["biped = biped_bringup.cli.main:main"]},
+)

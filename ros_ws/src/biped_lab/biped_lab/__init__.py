@@ -1,0 +1,1 @@
+"""Experiments, baselines, other tasks and figures."""

@@ -1,0 +1,1 @@
+"""The simulated world: physics, servo, measured ZMP and pacing."""

@@ -1,0 +1,15 @@
+"""Errors of the simulation package."""
+
+from __future__ import annotations
+
+
+class SimulationError(Exception):
+    """Base of this package's errors."""
+
+
+class WorldClosedError(SimulationError):
+    """The world was used after it had been closed."""
+
+
+class SnapshotError(SimulationError):
+    """A snapshot belongs to another world, or was released."""

@@ -1,0 +1,81 @@
+"""Limits, faults and disturbances of the simulated robot, with units and ranges."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from msgs_json.settings import check_ranges, section, setting
+
+
+@dataclass(frozen=True)
+class LimitSettings:
+    """What ends a walk."""
+
+    zmp_error_m: float = setting(
+        0.065, "m", "norm of the ZMP error that is a failure (Table 1)", above=0.0
+    )
+    joint_velocity_rad_s: float = setting(
+        20.0 * math.pi, "rad/s", "joint speed that is a failure (Table 1)", above=0.0
+    )
+    torque_saturation_s: float = setting(
+        0.1, "s", "a joint held at its torque limit this long is a failure", above=0.0
+    )
+    unloaded_feet_s: float = setting(
+        0.05, "s", "no foot carrying load for this long is a failure", above=0.0
+    )
+    foot_penetration_m: float = setting(
+        0.01, "m", "a sole this deep in the floor is a fault of the physics", above=0.0
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class DisturbanceSettings:
+    """Differences between the robot as planned and the robot as it is.
+
+    Random ones are drawn anew for every walk from the generator given to the robot.
+    """
+
+    push_force_n: float = setting(
+        0.0, "N", "push on the torso's CoM, in a random horizontal direction", lower=0.0
+    )
+    push_time_s: float = setting(2.0, "s", "when the push begins", lower=0.0)
+    push_duration_s: float = setting(0.1, "s", "how long the push lasts", above=0.0)
+    friction: float = setting(
+        0.9, "", "lateral friction between sole and floor", lower=0.0, upper=10.0
+    )
+    mass_error: float = setting(
+        0.0, "", "std. dev. of each link's relative mass error", lower=0.0, upper=0.3
+    )
+    position_noise_m: float = setting(
+        0.0, "m", "std. dev. of noise on the observed waist position", lower=0.0
+    )
+    zmp_noise_m: float = setting(
+        0.0, "m", "std. dev. of noise on the observed ZMP error", lower=0.0
+    )
+    acceleration_noise_m_s2: float = setting(
+        0.0, "m/s^2", "std. dev. of noise on the observed acceleration", lower=0.0
+    )
+    torque_limit_factor: float = setting(
+        1.0,
+        "",
+        "share of the joints' torque limits that is there",
+        above=0.0,
+        upper=1.0,
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class SimSettings:
+    """The simulated robot."""
+
+    limits: LimitSettings = section(LimitSettings)
+    disturbances: DisturbanceSettings = section(DisturbanceSettings)

@@ -1,0 +1,1 @@
+"""Gait, static waist, reference ZMP and the B-spline waist correction."""

@@ -1,0 +1,120 @@
+"""Uniform B-spline and the waist correction built from the learner's actions.
+
+With control points one learning tick apart, random actions of +-24 mm would ask for
+about 100 m/s^2. Each action a_k, taken at t_k, therefore adds
+`a_k (T / h) B((t - t_k) / h)` at once: the correction is the B-spline of knot spacing h
+whose control points are the running mean of the actions (Section 4.2).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from msgs_json.timing import (
+    CONTROL_PERIOD_S,
+    LEARNING_PERIOD_S,
+    TICKS_PER_LEARNING_TICK,
+)
+from trajectory_node.settings import CorrectionSettings
+
+_COMPONENTS = 2
+
+
+def uniform_bspline(u: NDArray[np.float64], order: int) -> NDArray[np.float64]:
+    """Return the uniform B-spline B(u) of the given order, support [0, order].
+
+    Args:
+        u: any shape, time in knot spacings.
+        order: degree + 1; 3 is quadratic, 4 cubic.
+    """
+    # Cardinal B-spline as a sum of truncated powers.
+    degree = order - 1
+    total = np.zeros_like(u, dtype=np.float64)
+    for i in range(order + 1):
+        weight = (-1) ** i * math.comb(order, i) / math.factorial(degree)
+        total += weight * np.maximum(u - i, 0.0) ** degree
+    return np.where((u > 0.0) & (u < order), total, 0.0)
+
+
+@njit(cache=True)
+def weighted_history(weights, history, newest):
+    """Return sum_m weights[:, m] * action of age m, actions kept in a ring.
+
+    Args:
+        weights: (rows, length) per control tick and age of the action.
+        history: (length, 2) ring of actions [m].
+        newest: place of the action of age 0.
+
+    Returns:
+        (rows, 2) correction [m].
+    """
+    rows, length = weights.shape
+    correction = np.zeros((rows, history.shape[1]))
+    for row in range(rows):
+        for age in range(length):
+            weight = weights[row, age]
+            action = history[(newest - age) % length]
+            for c in range(history.shape[1]):
+                correction[row, c] += weight * action[c]
+    return correction
+
+
+class CorrectionSpline:
+    """History of actions and the smooth waist correction that they make."""
+
+    def __init__(self, settings: CorrectionSettings, rows: int) -> None:
+        """Start with no correction.
+
+        Args:
+            settings: knot spacing and order.
+            rows: control ticks to evaluate from each learning tick on.
+        """
+        h = settings.knot_spacing_s
+        length = math.ceil(
+            round(settings.order * h / LEARNING_PERIOD_S, 9)
+        )  # older actions have no effect any more
+        ticks = (
+            np.arange(rows)[:, None] + TICKS_PER_LEARNING_TICK * np.arange(length)[None]
+        )
+        self._weights = (LEARNING_PERIOD_S / h) * uniform_bspline(
+            ticks * CONTROL_PERIOD_S / h, settings.order
+        )
+        self._history = np.zeros((length, _COMPONENTS))
+        self._newest = 0
+
+    def reset(self) -> None:
+        """Forget all actions."""
+        self._history[:] = 0.0
+        self._newest = 0
+
+    def push(self, action_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Take the action (dx, dy) of a learning tick; return the correction from then.
+
+        Args:
+            action_m: (2,) [m].
+
+        Returns:
+            (rows, 2) correction of the waist at consecutive control ticks [m].
+        """
+        self._newest = (self._newest + 1) % len(self._history)
+        self._history[self._newest] = action_m
+        return weighted_history(self._weights, self._history, self._newest)
+
+    def snapshot(self) -> NDArray[np.float64]:
+        """Return the (length, 2) actions by age, newest first [m]."""
+        ages = (self._newest - np.arange(len(self._history))) % len(self._history)
+        return self._history[ages].copy()
+
+    def restore(self, actions_m: NDArray[np.float64]) -> None:
+        """Take over what `snapshot` returned."""
+        if actions_m.shape != self._history.shape:
+            raise ValueError(
+                f"action history of shape {actions_m.shape}, "
+                f"this spline keeps {self._history.shape}"
+            )
+        self._newest = len(self._history) - 1
+        self._history[:] = actions_m[::-1]

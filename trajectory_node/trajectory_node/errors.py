@@ -1,0 +1,11 @@
+"""Errors of the trajectory package."""
+
+from __future__ import annotations
+
+
+class TrajectoryError(ValueError):
+    """Base of this package's errors."""
+
+
+class InfeasibleGaitError(TrajectoryError):
+    """The gait asks for something the robot cannot do; the message says what."""

@@ -1,0 +1,104 @@
+"""The reference motion: the static walk plus the learned waist correction."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from msgs_json.segment import WaistSegment
+from msgs_json.timing import TICKS_PER_LEARNING_TICK
+from trajectory_node.bspline import CorrectionSpline
+from trajectory_node.errors import TrajectoryError
+from trajectory_node.gait import LOOK_AHEAD_TICKS, plan_gait
+from trajectory_node.settings import CorrectionSettings, GaitSettings
+from trajectory_node.static_waist import static_waist
+
+
+class WaistReference:
+    """Turns one correction per learning tick into one waist segment."""
+
+    def __init__(
+        self,
+        gait: GaitSettings,
+        correction: CorrectionSettings,
+        look_ahead_ticks: int = 1,
+    ) -> None:
+        """Plan the walk.
+
+        Args:
+            gait: the walk.
+            correction: the spline.
+            look_ahead_ticks: rows handed out beyond the learning tick. One is needed
+                for the velocity of the last control tick.
+
+        Raises:
+            InfeasibleGaitError: the robot cannot reach what the gait asks for.
+        """
+        if not 1 <= look_ahead_ticks <= LOOK_AHEAD_TICKS:
+            raise TrajectoryError(
+                f"look_ahead_ticks = {look_ahead_ticks}: "
+                f"must be between 1 and {LOOK_AHEAD_TICKS}"
+            )
+        self.plan = plan_gait(gait)
+        self.static_waist = static_waist(self.plan, gait.waist_height_m)
+        self._rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
+        self._spline = CorrectionSpline(correction, self._rows)
+        self._tick = 0
+
+    @property
+    def ticks(self) -> int:
+        """Control ticks of the whole walk."""
+        return self.plan.ticks
+
+    def reset(self) -> None:
+        """Go back to the start of the walk, without any correction."""
+        self._tick = 0
+        self._spline.reset()
+
+    def segment(self, action_m: NDArray[np.float64]) -> WaistSegment:
+        """Return the next segment, with the correction (dx, dy) applied from its start.
+
+        The last segment of the walk can be shorter than a learning tick.
+
+        Args:
+            action_m: (2,) correction of this learning tick [m].
+
+        Raises:
+            TrajectoryError: the correction is not two finite numbers, or the walk is
+                over.
+        """
+        if action_m.shape != (2,) or not np.isfinite(action_m).all():
+            raise TrajectoryError(
+                f"correction {action_m}: must be two finite numbers [m]"
+            )
+        if self._tick >= self.plan.ticks:
+            raise TrajectoryError(f"the walk of {self.plan.ticks} ticks is over")
+        first = self._tick
+        rows = slice(first, first + self._rows)
+        waist = self.static_waist[rows].copy()
+        waist[:, :2] += self._spline.push(action_m)
+        n_ticks = min(TICKS_PER_LEARNING_TICK, self.plan.ticks - first)
+        self._tick += n_ticks
+        plan = self.plan
+        return WaistSegment(
+            first_tick=first,
+            n_ticks=n_ticks,
+            waist=waist,
+            left_foot=plan.left_foot[rows],
+            right_foot=plan.right_foot[rows],
+            zmp_reference=plan.zmp_reference[rows],
+            right_support=plan.right_support[rows],
+            double_support=plan.double_support[rows],
+            step_index=plan.step_index[rows],
+        )
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return what `restore` needs to go on from here."""
+        return {"tick": self._tick, "actions_m": self._spline.snapshot()}
+
+    def restore(self, snapshot: dict[str, Any]) -> None:
+        """Go on from a snapshot of a reference with the same settings."""
+        self._spline.restore(snapshot["actions_m"])
+        self._tick = snapshot["tick"]
