@@ -93,8 +93,8 @@ def from_mapping(
         if key not in fields:
             known = ", ".join(sorted(fields))
             raise SettingsError(str(key), value, f"unknown key; known here: {known}")
-        kind = hints[key]
-        if dataclasses.is_dataclass(kind):
+        kind: Any = hints[key]
+        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
             if not isinstance(value, Mapping):
                 raise SettingsError(key, value, "must be a section of keys")
             try:

@@ -15,5 +15,5 @@ def seconds(control_ticks: int) -> float:
 
 
 def microseconds(duration_s: float) -> int:
-    """Return a duration in whole microseconds, the unit in which events are compared."""
+    """Return a duration in whole microseconds, in which events are compared."""
     return round(duration_s * 1e6)

@@ -7,9 +7,10 @@ carries an end cause or the caller has seen enough.
 from __future__ import annotations
 
 import copy
+import hashlib
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,12 @@ class _Watch:
     unloaded_ticks: int = 0
     saturated_ticks: int = 0
     end_cause: EndCause | None = None
+    trajectory: Any = field(default_factory=hashlib.sha256)
+    """Running hash of all that was measured."""
+
+    def copy(self) -> _Watch:
+        """Return an independent copy."""
+        return replace(self, trajectory=self.trajectory.copy())
 
 
 class SimulatedBiped:
@@ -172,6 +179,11 @@ class SimulatedBiped:
         """Control ticks walked since the walk began."""
         return self._watch.control_tick
 
+    @property
+    def trajectory_sha256(self) -> str:
+        """Hash of the walk so far: every tick's joint states and ZMP, bit for bit."""
+        return str(self._watch.trajectory.hexdigest())
+
     # -- snapshots -----------------------------------------------------------------
 
     def snapshot(self) -> BipedSnapshot:
@@ -179,7 +191,7 @@ class SimulatedBiped:
         self.world.check_open()
         return BipedSnapshot(
             world_state=self.world.save(),
-            watch=copy.copy(self._watch),
+            watch=self._watch.copy(),
             disturbance=self._disturbance,
             rng_state=copy.deepcopy(dict(self._rng.bit_generator.state)),
         )
@@ -188,7 +200,7 @@ class SimulatedBiped:
         """Go back to a snapshot of this biped."""
         self.world.check_open()
         self.world.load(snapshot.world_state)
-        self._watch = copy.copy(snapshot.watch)
+        self._watch = snapshot.watch.copy()
         self._disturbance = snapshot.disturbance
         if self.settings.disturbances.mass_error > 0.0:
             self.world.set_mass_factors(snapshot.disturbance.mass_factors)
@@ -292,7 +304,7 @@ class SimulatedBiped:
             zmp_error += noise.zmp_noise_m * self._rng.standard_normal(2)
         if noise.acceleration_noise_m_s2 > 0.0:
             acceleration += noise.acceleration_noise_m_s2 * self._rng.standard_normal(2)
-        sums = sum_up(ticks, self._q_reference)
+        sums = sum_up(ticks, self._q_reference, watch.trajectory)
         left = contact is not None and contact.left_load_n > 0.0
         right = contact is not None and contact.right_load_n > 0.0
         return Observation(

@@ -36,12 +36,15 @@ class TickSums(NamedTuple):
     mean_joint_velocity_error_rad_s: float = 0.0
 
 
-def sum_up(ticks: list[ControlTick], q_reference: NDArray[np.float64]) -> TickSums:
+def sum_up(
+    ticks: list[ControlTick], q_reference: NDArray[np.float64], trajectory: Any
+) -> TickSums:
     """Sum up the control ticks of one learning tick; none at all gives zeros.
 
     Args:
         ticks: n measured control ticks.
         q_reference: (at least n + 1, 12) references; tick i went from row i to i + 1.
+        trajectory: hash (hashlib) that takes in all that was measured.
     """
     n = len(ticks)
     if n == 0:
@@ -49,6 +52,9 @@ def sum_up(ticks: list[ControlTick], q_reference: NDArray[np.float64]) -> TickSu
     q = np.array([[state[0] for state in tick.joint_states] for tick in ticks])
     dq = np.array([[state[1] for state in tick.joint_states] for tick in ticks])
     torque = np.array([[state[3] for state in tick.joint_states] for tick in ticks])
+    zmp = np.array([tick.contact[:2] for tick in ticks])
+    for measured in (q, dq, torque, zmp):
+        trajectory.update(measured.tobytes())
     q_error = q_reference[1 : n + 1] - q
     dq_reference = (q_reference[n] - q_reference[n - 1]) / CONTROL_PERIOD_S
     return TickSums(

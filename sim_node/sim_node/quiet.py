@@ -1,4 +1,4 @@
-"""Keep the engine's chatter out of standard output.
+"""Keep the engine's chatter out of standard output and error.
 
 PyBullet prints from C on import and on some calls, which would spoil output that
 scripts read.
@@ -15,17 +15,24 @@ from contextlib import contextmanager
 
 @contextmanager
 def engine_chatter_dropped() -> Iterator[None]:
-    """Send what C code prints meanwhile to nowhere; Python's own streams come back."""
-    sys.stdout.flush()
-    ctypes.CDLL(None).fflush(None)
-    kept = os.dup(1)
+    """Send what C code prints meanwhile to nowhere; both streams come back."""
+    _flush()
+    kept = {stream: os.dup(stream) for stream in (1, 2)}
     sink = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(sink, 1)
+        for stream in kept:
+            os.dup2(sink, stream)
         yield
     finally:
         # C buffers its output; what is left would surface after the switch back.
-        ctypes.CDLL(None).fflush(None)
-        os.dup2(kept, 1)
+        _flush()
         os.close(sink)
-        os.close(kept)
+        for stream, copy in kept.items():
+            os.dup2(copy, stream)
+            os.close(copy)
+
+
+def _flush() -> None:
+    sys.stdout.flush()
+    sys.stderr.flush()
+    ctypes.CDLL(None).fflush(None)

@@ -23,7 +23,7 @@ with engine_chatter_dropped():
     import pybullet
 
 GRAVITY_M_S2 = 9.81
-# Share of the position error that the servo takes back per tick, and of the speed error.
+# Share of its position and speed errors that the servo takes back per tick.
 POSITION_GAIN = 0.5
 VELOCITY_GAIN = 1.0
 _BASE_LINK = -1

@@ -9,6 +9,7 @@ whose control points are the running mean of the actions (Section 4.2).
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -24,7 +25,7 @@ from trajectory_node.settings import CorrectionSettings
 _COMPONENTS = 2
 
 
-def uniform_bspline(u: NDArray[np.float64], order: int) -> NDArray[np.float64]:
+def uniform_bspline(u: NDArray[np.floating[Any]], order: int) -> NDArray[np.float64]:
     """Return the uniform B-spline B(u) of the given order, support [0, order].
 
     Args:
@@ -41,7 +42,9 @@ def uniform_bspline(u: NDArray[np.float64], order: int) -> NDArray[np.float64]:
 
 
 @njit(cache=True)
-def weighted_history(weights, history, newest):
+def weighted_history(
+    weights: NDArray[Any], history: NDArray[Any], newest: int
+) -> NDArray[Any]:
     """Return sum_m weights[:, m] * action of age m, actions kept in a ring.
 
     Args:

@@ -69,7 +69,7 @@ def plan_gait(settings: GaitSettings) -> GaitPlan:
     length = settings.step_length_m
     foothold_x = {"left": 0.0, "right": 0.0}
     feet = {
-        side: np.zeros((len(time_us), 3)) + (0.0, sign * BIPED.half_hip_spacing, 0.0)
+        side: np.tile((0.0, sign * BIPED.half_hip_spacing, 0.0), (len(time_us), 1))
         for side, sign in (("left", 1.0), ("right", -1.0))
     }
 

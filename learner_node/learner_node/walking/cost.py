@@ -16,7 +16,8 @@ from __future__ import annotations
 import math
 
 from learner_node.walking.settings import CostSettings
-from msgs_json.episode_result import CostTerms
+from msgs_json.end_cause import EndCause
+from msgs_json.episode_result import CostTerms, EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.timing import seconds
 
@@ -76,6 +77,32 @@ class CostIntegral:
             final_joint_position=_FINAL_JOINT_WEIGHT * last.mean_joint_error_rad,
             final_joint_velocity=_FINAL_JOINT_WEIGHT
             * last.mean_joint_velocity_error_rad_s,
+        )
+
+    def result(
+        self,
+        last: Observation,
+        cause: EndCause,
+        target_ticks: int,
+        *,
+        compared_with: float | None = None,
+        reward: float = 0.0,
+        subtask: int = 0,
+        schedule_complete: bool = False,
+    ) -> EpisodeResult:
+        """Return the result of a walk that ends with `last`."""
+        return EpisodeResult(
+            episode=last.episode,
+            end_cause=cause,
+            control_ticks=last.control_tick,
+            target_ticks=target_ticks,
+            peak_zmp_error_m=self.peak_zmp_error_m,
+            peak_joint_velocity_rad_s=self.peak_joint_velocity_rad_s,
+            cost=self.terms(last),
+            t_err_estimate=compared_with,
+            reward=reward,
+            subtask=subtask,
+            schedule_complete=schedule_complete,
         )
 
 

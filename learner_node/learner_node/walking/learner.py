@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from learner_node.memory_hash import Arrays, arrays_sha256
+from learner_node.walking.actions import (
+    N_COMPONENTS,
+    NO_CORRECTION_M,
+    corrections_m,
+)
 from learner_node.walking.cost import CostEstimate, CostIntegral
 from learner_node.walking.inputs import sensory_input
 from learner_node.walking.schedule import LearningSchedule
 from learner_node.walking.settings import (
     N_CONTINUOUS,
     N_DISCRETE,
-    ActionSettings,
     LearnerSettings,
 )
 from learner_node.xol.agent import XolAgent
@@ -35,16 +41,10 @@ PENALTY_OF = {
     EndCause.FEET_UNLOADED: 0,
 }
 N_PENALTIES = 3  # Table 1, the additional penalty included
-N_COMPONENTS = 2  # dx and dy
-
-
-def corrections_m(settings: ActionSettings) -> NDArray[np.float64]:
-    """Return the (Na,) corrections to choose from [m]."""
-    return np.linspace(-settings.limit_m, settings.limit_m, settings.alternatives)
 
 
 class WalkLearner:
-    """XoL on the waist trajectory: states, actions, rewards and schedule of Section 4."""
+    """XoL on the waist trajectory: the task of Section 4."""
 
     def __init__(
         self, settings: LearnerSettings, walk_ticks: int, rng: np.random.Generator
@@ -74,7 +74,7 @@ class WalkLearner:
         self._cost = CostIntegral(settings.cost)
         self._alternatives_m = corrections_m(settings.action)
         self._hold_control_ticks = settings.action.hold_ticks * TICKS_PER_LEARNING_TICK
-        self._held_m = np.zeros(N_COMPONENTS)
+        self._held_m = NO_CORRECTION_M
 
     def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
         """Learn from an observation and answer it.
@@ -105,48 +105,72 @@ class WalkLearner:
     def _fail(self, observation: Observation, cause: EndCause) -> EpisodeResult:
         if cause in PENALTY_OF:
             self.agent.penalise(PENALTY_OF[cause])
-        return self._end(observation, cause, None, 0.0, self.schedule.target_ticks)
+        self.agent.finish_episode()
+        return self._cost.result(
+            observation,
+            cause,
+            self.schedule.target_ticks,
+            subtask=self.schedule.subtask,
+            schedule_complete=self.schedule.complete,
+        )
 
     def _succeed(self, observation: Observation) -> EpisodeResult:
         """Pay the reward of Table 2 and move on in the schedule."""
         terms = self._cost.terms(observation)
         if terms is None:
             raise ValueError("a walk without a control tick cannot succeed")
+        subtask, target_ticks = self.schedule.subtask, self.schedule.target_ticks
         compared_with = self.estimate.value
         success = self.estimate.is_success(terms.total)
         self.estimate.update(terms.total)
         rewards = self.settings.rewards
         reward = rewards.success if success else rewards.goal
         self.agent.reward(reward, counts=success)
-        target_ticks = self.schedule.target_ticks
         if success and self.schedule.count_success():
             self.agent.finish_subtask()
             if not self.schedule.complete:
                 # T_err grows with t_f: each subtask has its own estimate.
                 self.estimate.value = None
-        return self._end(
-            observation, EndCause.COMPLETED, compared_with, reward, target_ticks
-        )
-
-    def _end(
-        self,
-        observation: Observation,
-        cause: EndCause,
-        compared_with: float | None,
-        reward: float,
-        target_ticks: int,
-    ) -> EpisodeResult:
         self.agent.finish_episode()
-        return EpisodeResult(
-            episode=observation.episode,
-            end_cause=cause,
-            control_ticks=observation.control_tick,
-            target_ticks=target_ticks,
-            peak_zmp_error_m=self._cost.peak_zmp_error_m,
-            peak_joint_velocity_rad_s=self._cost.peak_joint_velocity_rad_s,
-            cost=self._cost.terms(observation),
-            t_err_estimate=compared_with,
+        return self._cost.result(
+            observation,
+            EndCause.COMPLETED,
+            target_ticks,
+            compared_with=compared_with,
             reward=reward,
-            subtask=self.schedule.subtask,
+            subtask=subtask,
             schedule_complete=self.schedule.complete,
         )
+
+    # -- checkpoint ----------------------------------------------------------------
+
+    def memory_sha256(self) -> str:
+        """Return a hash of all that was learned."""
+        return arrays_sha256(self.agent.memory())
+
+    def progress(self) -> dict[str, Any]:
+        """Return what goes into a checkpoint's header beside the agent's memory."""
+        return {
+            "subtask": self.schedule.subtask,
+            "successes": self.schedule.successes,
+            "schedule_complete": self.schedule.complete,
+            "t_err_estimate": self.estimate.value,
+            "rng": self.agent.rng.bit_generator.state,
+        }
+
+    def restore(self, progress: dict[str, Any], memory: Arrays) -> None:
+        """Go on between two episodes, as if never interrupted.
+
+        Raises:
+            KeyError, TypeError, ValueError: the content does not fit these settings.
+        """
+        subtask = int(progress["subtask"])
+        if not 0 <= subtask < len(self.schedule.targets):
+            raise ValueError(f"subtask {subtask} of {len(self.schedule.targets)}")
+        estimate = progress["t_err_estimate"]
+        self.agent.restore(memory)
+        self.agent.rng.bit_generator.state = progress["rng"]
+        self.schedule.subtask = subtask
+        self.schedule.successes = int(progress["successes"])
+        self.schedule.complete = bool(progress["schedule_complete"])
+        self.estimate.value = None if estimate is None else float(estimate)

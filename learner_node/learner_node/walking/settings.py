@@ -1,4 +1,4 @@
-"""Constants of the walking task (Section 4), with the readings the paper leaves open."""
+"""Constants of the walking task (Section 4), and the readings of what is left open."""
 
 from __future__ import annotations
 

@@ -7,6 +7,8 @@ all alternatives of some component are penalty sub-rules of any type.
 
 from __future__ import annotations
 
+from typing import Any
+
 from numba import njit
 from numpy.typing import NDArray
 
@@ -17,17 +19,18 @@ from numpy.typing import NDArray
 @njit(cache=True)
 def judge_state(
     k: int,
-    failures: NDArray,
-    selections: NDArray,
+    failures: NDArray[Any],
+    selections: NDArray[Any],
     minimum_selections: int,
     failure_threshold: float,
-    avoided: NDArray,
+    avoided: NDArray[Any],
 ) -> bool:
     """Judge all sub-rules of state k; return whether it is a penalty state.
 
     Args:
         k: the state.
-        failures, selections: counters of the rule table.
+        failures: (capacity, Np, I, J) counter of the rule table.
+        selections: (capacity, I, J) counter of the rule table.
         minimum_selections: N0.
         failure_threshold: lambda.
         avoided: (capacity, I, J) filled at k with the number of penalty types, from
@@ -56,7 +59,11 @@ def judge_state(
 
 @njit(cache=True)
 def count_selection(
-    k: int, chosen: NDArray, episode: int, selections: NDArray, last_episode: NDArray
+    k: int,
+    chosen: NDArray[Any],
+    episode: int,
+    selections: NDArray[Any],
+    last_episode: NDArray[Any],
 ) -> bool:
     """Count the chosen sub-rules, once per episode each; return whether any was new."""
     changed = False
@@ -76,11 +83,11 @@ def add_penalty(
     newest: int,
     oldest: int,
     head: int,
-    states: NDArray,
-    alternatives: NDArray,
-    live: NDArray,
-    eligibility: NDArray,
-    p: NDArray,
+    states: NDArray[Any],
+    alternatives: NDArray[Any],
+    live: NDArray[Any],
+    eligibility: NDArray[Any],
+    p: NDArray[Any],
 ) -> None:
     """P <- P + pnlty E on the decisions of ages newest <= age < oldest (eq. (1)).
 
@@ -103,10 +110,10 @@ def count_failures(
     oldest: int,
     episode: int,
     head: int,
-    states: NDArray,
-    alternatives: NDArray,
-    failures: NDArray,
-    last_failure: NDArray,
+    states: NDArray[Any],
+    alternatives: NDArray[Any],
+    failures: NDArray[Any],
+    last_failure: NDArray[Any],
 ) -> None:
     """Count a failure for decisions of newest <= age < oldest, once per episode."""
     length = states.shape[0]

@@ -6,6 +6,8 @@ sub-rule chosen again gives up its older place, so that it is updated once.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -17,7 +19,16 @@ _NO_PLACE = -1
 
 
 @njit(cache=True)
-def push_decision(state, chosen, head, states, alternatives, live, place, eligibility):
+def push_decision(
+    state: int,
+    chosen: NDArray[Any],
+    head: int,
+    states: NDArray[Any],
+    alternatives: NDArray[Any],
+    live: NDArray[Any],
+    place: NDArray[Any],
+    eligibility: NDArray[Any],
+) -> None:
     """Overwrite the oldest place `head` with a decision: E <- E + 1 (2(c)ii, iii)."""
     oldest = states[head]
     for i in range(chosen.shape[0]):
@@ -38,7 +49,13 @@ def push_decision(state, chosen, head, states, alternatives, live, place, eligib
 
 
 @njit(cache=True)
-def decay_eligibility(discount, states, alternatives, live, eligibility):
+def decay_eligibility(
+    discount: float,
+    states: NDArray[Any],
+    alternatives: NDArray[Any],
+    live: NDArray[Any],
+    eligibility: NDArray[Any],
+) -> None:
     """E <- gamma E for every sub-rule in the queue (2(c)vii)."""
     for place in range(states.shape[0]):
         for i in range(live.shape[1]):
@@ -80,9 +97,7 @@ class DecisionQueue:
 
     def clear(self) -> None:
         """Empty the queue and set all E = 0 (2(b))."""
-        touched = (
-            self.states[: self.filled] if self.filled < self.length else self.states
-        )
+        touched = self.states[: self.filled]
         self.eligibility[touched] = 0.0
         self._place[touched] = _NO_PLACE
         self.live[:] = False

@@ -6,6 +6,8 @@ table. `avoided` says how many penalty types a sub-rule avoids (see `judge_state
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -14,12 +16,12 @@ from numpy.typing import NDArray
 @njit(cache=True)
 def choose_roulette(
     k: int,
-    draws: NDArray,
-    q: NDArray,
-    avoided: NDArray,
+    draws: NDArray[Any],
+    q: NDArray[Any],
+    avoided: NDArray[Any],
     n_penalties: int,
     base_weight: float,
-    chosen: NDArray,
+    chosen: NDArray[Any],
 ) -> None:
     """Choose among non-penalty sub-rules with probability ~ Q + base weight.
 
@@ -43,7 +45,11 @@ def choose_roulette(
 
 @njit(cache=True)
 def choose_greedy(
-    k: int, q: NDArray, p: NDArray, avoided: NDArray, chosen: NDArray
+    k: int,
+    q: NDArray[Any],
+    p: NDArray[Any],
+    avoided: NDArray[Any],
+    chosen: NDArray[Any],
 ) -> None:
     """Choose the largest Q among the sub-rules that avoid the most penalties.
 
@@ -67,7 +73,11 @@ def choose_greedy(
 
 @njit(cache=True)
 def choose_ranked(
-    k: int, draws: NDArray, p: NDArray, avoided: NDArray, chosen: NDArray
+    k: int,
+    draws: NDArray[Any],
+    p: NDArray[Any],
+    avoided: NDArray[Any],
+    chosen: NDArray[Any],
 ) -> None:
     """Choose in a penalty state by rank of the summed P, smallest first.
 

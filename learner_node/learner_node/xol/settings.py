@@ -1,4 +1,4 @@
-"""Constants of the learner (Sections 2 and 3), with the readings the paper leaves open."""
+"""Constants of the learner (Sections 2, 3), and the readings of what is left open."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ The uniform grid of [18] is the alternative.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -22,7 +23,13 @@ _SAME_CELL_SQUARED_DISTANCE = 1e-6
 
 
 @njit(cache=True)
-def nearest_state(discrete, point, state_discrete, state_centers, count):
+def nearest_state(
+    discrete: NDArray[Any],
+    point: NDArray[Any],
+    state_discrete: NDArray[Any],
+    state_centers: NDArray[Any],
+    count: int,
+) -> tuple[int, float]:
     """Return (index, squared distance) of the nearest state of the same partition.
 
     Args:
@@ -151,6 +158,6 @@ class BasisStates:
         return k
 
 
-def doubled(array: NDArray) -> NDArray:  # type: ignore[type-arg]
+def doubled(array: NDArray[Any]) -> NDArray[Any]:
     """Return a copy with twice the rows, the new ones zero."""
     return np.concatenate([array, np.zeros_like(array)])

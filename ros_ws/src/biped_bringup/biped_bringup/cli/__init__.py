@@ -1,0 +1,1 @@
+"""The `biped` command, one file per verb."""

@@ -1,0 +1,59 @@
+"""`biped check`: is this configuration sound, and what does it say?"""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+import yaml
+
+from biped_bringup.cli.options import (
+    add_json_option,
+    add_settings_options,
+    print_json,
+    settings_of,
+)
+from learner_node.walking.schedule import LearningSchedule
+from msgs_json.settings import to_mapping
+from msgs_json.timing import seconds
+from trajectory_node.waist_reference import WaistReference
+
+
+def add_parser(verbs: Any) -> None:
+    """Add the verb."""
+    parser: argparse.ArgumentParser = verbs.add_parser(
+        "check",
+        help="validate a configuration without running it",
+        description="Validate settings: every key, range and unit, and whether the "
+        "robot can reach the gait's footholds. Exit status 2 and one line if not.",
+    )
+    add_settings_options(parser)
+    parser.add_argument(
+        "--show", action="store_true", help="print all settings as YAML (SI units)"
+    )
+    add_json_option(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check and report."""
+    settings = settings_of(options)
+    reference = WaistReference(settings.gait, settings.correction)
+    schedule = LearningSchedule(settings.learner.schedule, reference.ticks)
+    if options.json:
+        print_json(
+            {
+                "valid": True,
+                "walk_s": seconds(reference.ticks),
+                "targets_s": [seconds(ticks) for ticks in schedule.targets],
+                "settings": to_mapping(settings),
+            }
+        )
+    elif options.show:
+        print(yaml.safe_dump(to_mapping(settings), sort_keys=False), end="")
+    else:
+        print(
+            f"valid: a walk of {seconds(reference.ticks):g} s in {settings.gait.steps} "
+            f"steps, learned in {len(schedule.targets)} subtasks"
+        )
+    return 0

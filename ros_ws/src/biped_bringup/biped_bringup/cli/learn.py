@@ -1,0 +1,173 @@
+"""`biped learn`: learn the walk in this process, on the full physics."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.options import (
+    add_json_option,
+    add_settings_options,
+    names_settings,
+    natural,
+    print_json,
+    settings_of,
+    writable_folder,
+)
+from biped_bringup.cli.progress import TrainingProgress
+from biped_bringup.training import TrainingRun
+from learner_node.atomic_file import atomic_file
+from msgs_json.episode_result import EpisodeResult
+
+MEMORY_FILE = "memory.npz"
+LOG_FILE = "episodes.csv"
+INTERRUPTED = 130
+_DEFAULT_OUT = Path("bags/learned")
+
+
+def add_parser(verbs: Any) -> None:
+    """Add the verb."""
+    parser: argparse.ArgumentParser = verbs.add_parser(
+        "learn",
+        help="learn the walk, until a frozen greedy walk succeeds",
+        description="Learn the walk in this process. Ends when the schedule is "
+        "complete and a frozen greedy walk of the whole walk succeeds. Ctrl-C ends it after the "
+        "running episode, with everything saved. Exit status 0 when learned, 1 when "
+        "the episodes ran out, 130 when interrupted.",
+    )
+    parser.add_argument(
+        "--seed", type=natural, metavar="N", help="of every random draw (default 0)"
+    )
+    parser.add_argument(
+        "--episodes", type=natural, metavar="N", help="give up after N episodes in all"
+    )
+    parser.add_argument(
+        "--stop-at-schedule",
+        action="store_true",
+        help="end when the schedule is complete, as the paper does, whether or not a "
+        "frozen greedy walk succeeds",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help=f"folder for {MEMORY_FILE} (all that was learned, and all that is needed "
+        f"to go on) and {LOG_FILE} (default {_DEFAULT_OUT}; with --resume, the "
+        "folder of that file)",
+    )
+    parser.add_argument(
+        "--resume",
+        type=Path,
+        metavar="FILE",
+        help=f"go on from a {MEMORY_FILE}, bit for bit as if never interrupted",
+    )
+    parser.add_argument(
+        "--checkpoint-every",
+        type=float,
+        default=20.0,
+        metavar="S",
+        help="seconds of real time between saves (default 20)",
+    )
+    add_settings_options(parser)
+    add_json_option(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Learn and report."""
+    training = _training(options)
+    folder = writable_folder(
+        options.out
+        or (options.resume.parent if options.resume is not None else _DEFAULT_OUT)
+    )
+    memory_file = folder / MEMORY_FILE
+    console = Console(stderr=True)
+    try:
+        with _stop_requests() as stops, TrainingProgress(training, console) as progress:
+            saved = time.monotonic()
+
+            def after_episode(_: EpisodeResult) -> bool:
+                nonlocal saved
+                progress.update()
+                if time.monotonic() - saved >= options.checkpoint_every:
+                    training.save(memory_file)
+                    saved = time.monotonic()
+                return not stops
+
+            training.run(options.episodes, options.stop_at_schedule, after_episode)
+            training.save(memory_file)
+            with atomic_file(folder / LOG_FILE) as log:
+                log.write(training.log.csv_text().encode())
+        summary = training.summary(memory_file)
+    finally:
+        training.close()
+    if options.json:
+        print_json(summary)
+    else:
+        _print(summary, folder, interrupted=bool(stops))
+    if stops:
+        return INTERRUPTED
+    done = summary["schedule_complete"] if options.stop_at_schedule else summary["completed"]  # fmt: skip  # noqa: E501
+    return 0 if done else 1
+
+
+def _training(options: argparse.Namespace) -> TrainingRun:
+    if options.resume is None:
+        seed = 0 if options.seed is None else options.seed
+        return TrainingRun(settings_of(options), seed)
+    if names_settings(options) or options.seed is not None:
+        raise CommandError(
+            "--resume: goes on with the settings and the seed of the file; "
+            "--preset, --config, --set and --seed cannot be given with it"
+        )
+    return TrainingRun.load(options.resume)
+
+
+@contextmanager
+def _stop_requests() -> Iterator[list[int]]:
+    """Collect SIGINT and SIGTERM; a second one falls through to the old handler."""
+    requests: list[int] = []
+    old: dict[int, Any] = {}
+
+    def request(number: int, _: Any) -> None:
+        requests.append(number)
+        signal.signal(number, old[number])
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        old[number] = signal.signal(number, request)
+    try:
+        yield requests
+    finally:
+        for number, handler in old.items():
+            signal.signal(number, handler)
+
+
+def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:
+    if interrupted:
+        print("interrupted; all episodes so far are saved")
+    elif summary["completed"]:
+        print("learned: a frozen greedy walk completes the whole walk")
+    else:
+        print("not learned yet")
+    print(
+        f"episodes             {summary['episodes']}"
+        f" (schedule complete after {summary['schedule_episodes'] or '-'},"
+        f" greedy walk after {summary['greedy_episodes'] or '-'})\n"
+        f"target time          {summary['target_time_s']:g} s\n"
+        f"simulated            {summary['simulated_s']:.1f} s in "
+        f"{summary['cpu_s']:.1f} CPU s\n"
+        f"states               {summary['basis_states']}, of which "
+        f"{summary['fixed_states']} fixed, {summary['penalty_states']} penalty states\n"
+        f"memory               {summary['memory_file']}\n"
+        f"episode log          {folder / LOG_FILE}"
+    )
+    if not summary["completed"]:
+        print(f"go on with           biped learn --resume {summary['memory_file']}")

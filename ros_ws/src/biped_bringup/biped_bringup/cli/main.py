@@ -1,0 +1,52 @@
+"""`biped`: learn the walk, walk it, check a configuration.
+
+Exit status: 0 done; 1 an honest "not achieved" (walk not learned, walk failed);
+2 wrong input; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+import argcomplete
+
+from biped_bringup.cli import check, learn, walk
+from biped_bringup.cli.errors import CommandError
+from learner_node.checkpoint import CheckpointError
+from msgs_json.settings import SettingsError
+from trajectory_node.errors import TrajectoryError
+
+WRONG_INPUT = 2
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of all verbs."""
+    top = argparse.ArgumentParser(
+        prog="biped",
+        description="A simulated biped learns the waist trajectory of dynamic walking "
+        "by exploitation-oriented learning with fixed-mode states.",
+        epilog="exit status: 0 done, 1 not achieved, 2 wrong input, 130 interrupted",
+    )
+    verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
+    for verb in (learn, walk, check):
+        verb.add_parser(verbs)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit status."""
+    commands = parser()
+    argcomplete.autocomplete(commands)
+    options = commands.parse_args(arguments)
+    try:
+        status: int = options.run(options)
+    except (SettingsError, TrajectoryError, CheckpointError, CommandError) as error:
+        print(f"biped {options.verb}: {error}", file=sys.stderr)
+        return WRONG_INPUT
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

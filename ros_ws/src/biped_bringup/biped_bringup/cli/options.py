@@ -1,0 +1,93 @@
+"""Options that several verbs share."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from biped_bringup.cli.errors import CommandError
+from biped_bringup.run_settings import (
+    DEFAULT_PRESET,
+    PRESETS,
+    RunSettings,
+    load_settings,
+)
+
+
+def add_settings_options(parser: argparse.ArgumentParser) -> None:
+    """Add --preset, --config and --set."""
+    group = parser.add_argument_group("settings")
+    group.add_argument(
+        "--preset",
+        choices=PRESETS,
+        help="paper: 20 ms decisions, 15 successes per subtask; coarse: 100 ms "
+        "decisions; quick: few successes per subtask, for demonstrations "
+        f"(default: {DEFAULT_PRESET})",
+    )
+    group.add_argument(
+        "--config",
+        type=Path,
+        metavar="YAML",
+        help="settings laid over the preset's, in the same form",
+    )
+    group.add_argument(
+        "--set",
+        dest="changes",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="change one setting, e.g. learner.schedule.successes_per_subtask=5 or "
+        "gait.double_support_s=1.0 [s]; repeatable; `biped check --show` lists all",
+    )
+
+
+def add_json_option(parser: argparse.ArgumentParser) -> None:
+    """Add --json."""
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object, for scripts"
+    )
+
+
+def settings_of(options: argparse.Namespace) -> RunSettings:
+    """Return the settings that the options describe."""
+    return load_settings(
+        options.preset or DEFAULT_PRESET, options.config, options.changes
+    )
+
+
+def names_settings(options: argparse.Namespace) -> bool:
+    """Return whether any of the settings options was given."""
+    return bool(options.preset or options.config or options.changes)
+
+
+def writable_folder(folder: Path) -> Path:
+    """Return the folder, made if need be.
+
+    Raises:
+        CommandError: it cannot be made or written to.
+    """
+    probe = folder / ".writable"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise CommandError(
+            f"{folder}: must be a folder that can be written to ({error.strerror})"
+        ) from None
+    return folder
+
+
+def natural(text: str) -> int:
+    """Parse a whole number that is at least 0."""
+    value = int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be at least 0")
+    return value
+
+
+def print_json(values: dict[str, Any]) -> None:
+    """Print one JSON object."""
+    print(json.dumps(values, indent=2))

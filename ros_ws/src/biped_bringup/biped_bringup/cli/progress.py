@@ -1,0 +1,69 @@
+"""Live progress of a training run: one line on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+import time
+from types import TracebackType
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from biped_bringup.training import TrainingRun
+from msgs_json.timing import seconds
+
+# How often a line is written where there is no terminal to redraw [s].
+_PLAIN_INTERVAL_S = 10.0
+
+
+class TrainingProgress:
+    """Shows a run's state on standard error while it goes on."""
+
+    def __init__(self, run: TrainingRun, console: Console) -> None:
+        """Prepare; show nothing yet."""
+        self._run = run
+        self._console = console
+        self._live = Live(console=console, refresh_per_second=4)
+        self._since = time.monotonic()
+        self._shown = self._since
+        self._ticks_before = run.tally.simulated_ticks + run.tally.evaluation_ticks
+
+    def __enter__(self) -> TrainingProgress:
+        """Start to show."""
+        self._live.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Leave the last state on the screen."""
+        self._live.update(Text(self.line()))
+        self._live.stop()
+
+    def update(self) -> None:
+        """Show the run as it stands."""
+        now = time.monotonic()
+        if self._console.is_terminal:
+            self._live.update(Text(self.line()))
+        elif now - self._shown >= _PLAIN_INTERVAL_S:
+            self._shown = now
+            self._console.print(self.line(), highlight=False, soft_wrap=True)
+
+    def line(self) -> str:
+        """Return the state in one line."""
+        run = self._run
+        schedule, agent, tally = run.learner.schedule, run.learner.agent, run.tally
+        ticks = tally.simulated_ticks + tally.evaluation_ticks - self._ticks_before
+        rate = seconds(ticks) / max(time.monotonic() - self._since, 1e-9)
+        return (
+            f"target {seconds(schedule.target_ticks):5.2f} s"
+            f"{' (whole walk, schedule complete)' if schedule.complete else ''}"
+            f"  successes {schedule.successes}"
+            f"  episodes {run.episodes}  survival {100 * run.log.survival():.0f} %"
+            f"  states {agent.basis_states} (fixed {agent.fixed_states}, "
+            f"penalty {agent.penalty_states})"
+            f"  {rate:.1f} simulated s/s"
+        )

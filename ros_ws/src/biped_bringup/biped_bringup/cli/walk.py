@@ -1,0 +1,137 @@
+"""`biped walk`: one walk without learning, greedy or uncorrected."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.options import (
+    add_json_option,
+    add_settings_options,
+    natural,
+    print_json,
+    settings_of,
+)
+from biped_bringup.run_settings import changed_settings
+from biped_bringup.training import TrainingRun
+from biped_bringup.walker import Walker
+from biped_bringup.zmp_figure import ZmpTrace, draw_zmp
+from learner_node.walking.frozen import greedy_walk, static_walk
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.timing import seconds
+
+
+def add_parser(verbs: Any) -> None:
+    """Add the verb."""
+    parser: argparse.ArgumentParser = verbs.add_parser(
+        "walk",
+        help="walk once, greedily from a memory or uncorrected",
+        description="Walk the whole walk once, without learning, and report how it "
+        "ended, the peak ZMP error [m] and the six terms of T_err. Exit status 0 when "
+        "the walk was completed, 1 when it failed.",
+    )
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument(
+        "--memory", type=Path, metavar="FILE", help="what `biped learn` wrote"
+    )
+    source.add_argument(
+        "--static", action="store_true", help="the static walk, without correction"
+    )
+    parser.add_argument(
+        "--tds",
+        type=float,
+        metavar="S",
+        help="double support time [s] (short for --set gait.double_support_s=S)",
+    )
+    parser.add_argument(
+        "--seed",
+        type=natural,
+        default=0,
+        help="of the disturbances, if any (default 0)",
+    )
+    parser.add_argument(
+        "--figure", type=Path, metavar="PNG", help="draw the ZMP of the walk"
+    )
+    add_settings_options(parser)
+    add_json_option(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Walk and report."""
+    if options.tds is not None:
+        options.changes.append(f"gait.double_support_s={options.tds}")
+    if options.figure is not None and not options.figure.parent.is_dir():
+        raise CommandError(f"{options.figure.parent}: is not a folder")
+    result, sha256 = _walk(options)
+    if options.json:
+        print_json(_summary(result, sha256))
+    else:
+        _print(result, sha256)
+        if options.figure is not None:
+            print(f"picture of the ZMP   {options.figure}")
+    return 0 if result.completed else 1
+
+
+def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
+    agent = None
+    if options.memory is not None:
+        if options.preset is not None:
+            raise CommandError("--preset: a memory brings its own settings")
+        learned = TrainingRun.load(options.memory)
+        learned.close()
+        agent = learned.learner.agent
+        settings = changed_settings(learned.settings, options.config, options.changes)
+        if settings.learner != learned.settings.learner:
+            raise CommandError(
+                "--set, --config: with --memory, only gait, correction and sim can be "
+                "changed; the learner's settings belong to the memory"
+            )
+    else:
+        settings = settings_of(options)
+    trace = ZmpTrace()
+    walker = Walker(settings, np.random.default_rng(options.seed), trace.add)
+    try:
+        if agent is not None:
+            responder = greedy_walk(settings.learner, walker.walk_ticks, agent)
+        else:
+            responder = static_walk(settings.learner, walker.walk_ticks)
+        result = walker.walk(responder, episode=1)
+        if options.figure is not None:
+            draw_zmp(trace, walker.reference.plan, settings.sim.limits, options.figure)
+        return result, walker.biped.trajectory_sha256
+    finally:
+        walker.close()
+
+
+def _summary(result: EpisodeResult, sha256: str) -> dict[str, Any]:
+    return {
+        "end_cause": str(result.end_cause),
+        "end_time_s": seconds(result.control_ticks),
+        "control_ticks": result.control_ticks,
+        "completed": result.completed,
+        "peak_zmp_error_m": result.peak_zmp_error_m,
+        "peak_joint_velocity_rad_s": result.peak_joint_velocity_rad_s,
+        "t_err": None if result.cost is None else result.cost.total,
+        "t_err_terms": msgspec.to_builtins(result.cost),
+        "trajectory_sha256": sha256,
+    }
+
+
+def _print(result: EpisodeResult, sha256: str) -> None:
+    print(
+        f"end                  {result.end_cause} after "
+        f"{seconds(result.control_ticks):.3f} s of {seconds(result.target_ticks):g} s\n"
+        f"peak ZMP error       {1000 * result.peak_zmp_error_m:.1f} mm\n"
+        f"peak joint velocity  {result.peak_joint_velocity_rad_s:.2f} rad/s"
+    )
+    if result.cost is not None:
+        print(f"T_err                {result.cost.total:.4f}, the sum of")
+        for name, value in msgspec.to_builtins(result.cost).items():
+            print(f"  {name:<18} {value:.5f}")
+    print(f"trajectory SHA-256   {sha256}")

@@ -1,0 +1,116 @@
+"""All settings of a run: presets, changes by `--set`, checks across packages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from learner_node.walking.settings import LearnerSettings
+from msgs_json.settings import SettingsError, from_mapping, overlay, section, to_mapping
+from sim_node.settings import SimSettings
+from trajectory_node.settings import CorrectionSettings, GaitSettings
+
+PRESETS = ("paper", "coarse", "quick")
+DEFAULT_PRESET = "paper"
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """Gait, correction, robot and learner."""
+
+    gait: GaitSettings = section(GaitSettings)
+    correction: CorrectionSettings = section(CorrectionSettings)
+    sim: SimSettings = section(SimSettings)
+    learner: LearnerSettings = section(LearnerSettings)
+
+    def __post_init__(self) -> None:
+        """Refuse combinations that no part can see alone."""
+        first = self.learner.schedule.first_target_s
+        if first > self.gait.duration_s:
+            raise SettingsError(
+                "learner.schedule.first_target_s",
+                first,
+                f"must be at most the walk's {self.gait.duration_s:g} s",
+            )
+
+
+def preset_text(name: str) -> str:
+    """Return a preset's YAML."""
+    if name not in PRESETS:
+        raise SettingsError("preset", name, f"must be one of {', '.join(PRESETS)}")
+    return resources.files(__package__).joinpath(f"presets/{name}.yaml").read_text()
+
+
+def load_settings(
+    preset: str = DEFAULT_PRESET,
+    file: Path | None = None,
+    changes: Iterable[str] = (),
+) -> RunSettings:
+    """Return the settings of a preset, with a YAML file and `key=value`s laid over.
+
+    Args:
+        preset: one of PRESETS.
+        file: YAML of the presets' form; may be partial.
+        changes: dotted settings such as `learner.action.alternatives=9`.
+
+    Raises:
+        SettingsError: naming key, value and what is allowed.
+    """
+    return _laid_over(_parsed(preset_text(preset), f"preset {preset}"), file, changes)
+
+
+def changed_settings(
+    settings: RunSettings, file: Path | None = None, changes: Iterable[str] = ()
+) -> RunSettings:
+    """Return the settings with a YAML file and `key=value`s laid over.
+
+    Raises:
+        SettingsError: naming key, value and what is allowed.
+    """
+    return _laid_over(to_mapping(settings), file, changes)
+
+
+def _laid_over(
+    values: Mapping[str, Any], file: Path | None, changes: Iterable[str]
+) -> RunSettings:
+    if file is not None:
+        try:
+            text = file.read_text()
+        except (OSError, UnicodeDecodeError) as error:
+            raise SettingsError("file", str(file), f"cannot be read: {error}") from None
+        values = overlay(values, _parsed(text, str(file)))
+    for change in changes:
+        values = overlay(values, _change(change))
+    return from_mapping(RunSettings, values)
+
+
+def _parsed(text: str, name: str) -> Mapping[str, Any]:
+    try:
+        values = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        reason = " ".join(str(error).split())
+        raise SettingsError("file", name, f"is not YAML: {reason}") from None
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping):
+        raise SettingsError("file", name, "must hold sections of settings")
+    return values
+
+
+def _change(text: str) -> dict[str, Any]:
+    """Return `a.b=value` as nested mappings."""
+    key, separator, value = text.partition("=")
+    if not separator or not key:
+        raise SettingsError("--set", text, "must have the form section.key=value")
+    try:
+        nested: Any = yaml.safe_load(value)
+    except yaml.YAMLError:
+        raise SettingsError("--set", text, "the value is not YAML") from None
+    for part in reversed(key.split(".")):
+        nested = {part: nested}
+    return dict(nested)

@@ -1,0 +1,63 @@
+"""A walk in one process: learner, trajectory and robot, tick by tick, without ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from biped_bringup.run_settings import RunSettings
+from learner_node.walking.actions import NO_CORRECTION_M
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.observation import Observation
+from sim_node.biped import SimulatedBiped
+from sim_node.control_tick import ControlTick
+from trajectory_node.waist_reference import WaistReference
+
+
+class Responder(Protocol):
+    """Whoever answers observations: a learner, or a frozen walk."""
+
+    def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
+        """Return the correction [m] for the coming learning tick, or the result."""
+
+
+class Walker:
+    """The robot and its reference, for one walk after the other."""
+
+    def __init__(
+        self,
+        settings: RunSettings,
+        rng: np.random.Generator,
+        on_tick: Callable[[ControlTick], None] | None = None,
+    ) -> None:
+        """Plan the gait and build the world.
+
+        Args:
+            settings: of the whole run.
+            rng: source of the disturbances.
+            on_tick: called after every control tick.
+        """
+        self.reference = WaistReference(settings.gait, settings.correction)
+        standing = self.reference.segment(NO_CORRECTION_M)
+        self.biped = SimulatedBiped(settings.sim, standing, rng, on_tick)
+
+    @property
+    def walk_ticks(self) -> int:
+        """Control ticks of the whole walk."""
+        return self.reference.ticks
+
+    def walk(self, responder: Responder, episode: int) -> EpisodeResult:
+        """Walk until the responder gives a result."""
+        self.reference.reset()
+        answer = responder.respond(self.biped.begin_walk(episode))
+        while not isinstance(answer, EpisodeResult):
+            observation = self.biped.execute(self.reference.segment(answer))
+            answer = responder.respond(observation)
+        return answer
+
+    def close(self) -> None:
+        """End the world."""
+        self.biped.close()

@@ -1,0 +1,139 @@
+"""Learn with many seeds and report every one of them, the unfinished ones too.
+
+    python -m biped_lab.seed_study --seeds 101-120 --out bags/paper_seeds -- --preset paper
+
+What follows `--` goes to `biped learn`. Each seed is a process of its own; its figures
+are appended to `runs.jsonl` in the folder, and a seed that stands there already is not
+run again, so an interrupted study goes on where it stopped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+RUNS_FILE = "runs.jsonl"
+
+
+def main() -> int:
+    """Run the study; exit status 1 if a run could not be carried out."""
+    options = _parser().parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    runs_file = options.out / RUNS_FILE
+    done = read_runs(runs_file)
+    missing = [seed for seed in options.seeds if seed not in {r["seed"] for r in done}]
+    failed = False
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for run in pool.map(
+            lambda seed: run_seed(seed, options.out, options.learn), missing
+        ):
+            if "error" in run:
+                print(f"seed {run['seed']}: {run['error']}", file=sys.stderr)
+                failed = True
+                continue
+            with runs_file.open("a") as file:
+                file.write(json.dumps(run) + "\n")
+            print(_row(run), flush=True)
+    print(summary([r for r in read_runs(runs_file) if r["seed"] in options.seeds]))
+    return 1 if failed else 0
+
+
+def run_seed(seed: int, out: Path, learn_options: list[str]) -> dict[str, Any]:
+    """Learn with one seed, then walk greedily; return the figures of both."""
+    folder = out / f"seed_{seed}"
+    command = [sys.executable, "-m", "biped_bringup.cli.main"]
+    learned = subprocess.run(
+        [*command, "learn", "--json", "--seed", str(seed), "--out", str(folder),
+         *learn_options],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    if learned.returncode not in (0, 1):
+        return {"seed": seed, "error": learned.stderr.strip()}
+    run: dict[str, Any] = json.loads(learned.stdout)
+    walked = subprocess.run(
+        [*command, "walk", "--json", "--memory", run["memory_file"]],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    if walked.returncode not in (0, 1):
+        return {"seed": seed, "error": walked.stderr.strip()}
+    walk = json.loads(walked.stdout)
+    run["walk"] = {
+        key: walk[key]
+        for key in ("completed", "control_ticks", "peak_zmp_error_m", "t_err_terms")
+    }
+    return run
+
+
+def read_runs(runs_file: Path) -> list[dict[str, Any]]:
+    """Return the runs carried out so far."""
+    if not runs_file.exists():
+        return []
+    return [json.loads(line) for line in runs_file.read_text().splitlines()]
+
+
+def summary(runs: list[dict[str, Any]]) -> str:
+    """Return the study's figures; unfinished runs count as censored at their end."""
+    if not runs:
+        return "no runs"
+    scheduled = [r for r in runs if r["schedule_complete"]]
+    learned = [r for r in runs if r["completed"]]
+    lines = [
+        f"{len(runs)} seeds; schedule complete {len(scheduled)}, "
+        f"frozen greedy walk learned {len(learned)}",
+        # Censored runs are longer than any bound: they sort last.
+        _spread("episodes to the schedule's end", runs, "schedule_episodes"),
+        _spread("episodes to the greedy walk", runs, "greedy_episodes"),
+        f"simulated s: median {statistics.median(r['simulated_s'] for r in runs):.0f}; "
+        f"CPU s: median {statistics.median(r['cpu_s'] for r in runs):.0f}",
+    ]
+    return "\n".join(lines)
+
+
+def _spread(name: str, runs: list[dict[str, Any]], key: str) -> str:
+    values = sorted(r[key] if r[key] is not None else float("inf") for r in runs)
+    median = statistics.median(values)
+    censored = sum(value == float("inf") for value in values)
+    return (
+        f"{name}: min {values[0]:g}, median {median:g}, max {values[-1]:g}"
+        f"{f' ({censored} censored)' if censored else ''}"
+    )
+
+
+def _row(run: dict[str, Any]) -> str:
+    walk = run["walk"]
+    return (
+        f"seed {run['seed']:4d}  target {run['target_time_s']:5.2f} s"
+        f"  schedule {run['schedule_episodes'] or '-':>5}"
+        f"  greedy {run['greedy_episodes'] or '-':>5}  episodes {run['episodes']:5d}"
+        f"  simulated {run['simulated_s']:7.0f} s  CPU {run['cpu_s']:5.0f} s"
+        f"  states {run['basis_states']}/{run['fixed_states']}/{run['penalty_states']}"
+        f"  walk {walk['control_ticks']} ticks, {1000 * walk['peak_zmp_error_m']:.1f} mm"
+    )
+
+
+def _seeds(text: str) -> list[int]:
+    first, _, last = text.partition("-")
+    return list(range(int(first), int(last or first) + 1))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m biped_lab.seed_study", description=__doc__.splitlines()[0]
+    )
+    parser.add_argument("--seeds", type=_seeds, required=True, metavar="FIRST-LAST")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser.add_argument(
+        "learn", nargs="*", metavar="-- LEARN_OPTION", help="for `biped learn`"
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,141 @@
+"""Random problems, and random calls to a learner that follow the order of an episode.
+
+A call is a pair (method, arguments). Inputs come from a handful of points, so that
+states repeat.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from hypothesis import strategies as st
+
+from learner_node.xol.agent import XolAgent
+from learner_node.xol.rules import ActionSpace
+from learner_node.xol.settings import FixedModeSettings, StateSettings, XolSettings
+
+# Differences of these never add up to a squared distance of 1, where a basis function
+# of width 1 ends.
+CONTINUOUS = (0.0, 0.4, 1.5, 3.0)
+DISCRETE = (-10.0, 10.0)
+PENALTY_VALUES = (10.0, 3.0, 0.3, 7.0)
+REWARDS = (10_000.0, 10.0, 0.1)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What a learner is made for."""
+
+    settings: XolSettings
+    space: ActionSpace
+    n_discrete: int
+    n_continuous: int
+    n_penalties: int
+    seed: int
+
+    def learner(self, kind=XolAgent):
+        return kind(
+            self.settings,
+            self.space,
+            self.n_discrete,
+            self.n_continuous,
+            PENALTY_VALUES[: self.n_penalties],
+            np.random.default_rng(self.seed),
+        )
+
+
+@st.composite
+def problems(draw):
+    n_continuous = draw(st.integers(0, 3))
+    decomposed = draw(st.booleans())
+    queue_length = draw(st.integers(1, 8))
+    settings = XolSettings(
+        discount=draw(st.sampled_from((0.8, 0.98, 1.0))),
+        queue_length=queue_length,
+        penalty_reach=draw(st.integers(1, 4)),
+        failure_reach=draw(st.integers(1, queue_length)),
+        minimum_selections=draw(st.integers(1, 3)),
+        failure_threshold=draw(st.sampled_from((0.0, 0.3, 0.5, 1.0))),
+        base_weight=draw(st.sampled_from((0.5, 100.0))),
+        decomposed=decomposed,
+        states=StateSettings(
+            basis=draw(st.sampled_from(("gaussian", "uniform"))),
+            radii=(1.0, 0.7, 2.0)[:n_continuous],
+            life_episodes=draw(st.integers(1, 4)),
+        ),
+        fixed_mode=FixedModeSettings(
+            strategy=draw(st.sampled_from(("strategy1", "strategy2", "none"))),
+            rewards_to_fix=draw(st.integers(1, 3)),
+            released_states=draw(st.integers(0, 3)),
+            release=draw(st.sampled_from(("last_decisions", "nearest"))),
+        ),
+    )
+    n_components = draw(st.integers(1, 3 if decomposed else 2))
+    n_alternatives = draw(st.integers(2, 5 if decomposed else 3))
+    return Problem(
+        settings=settings,
+        space=ActionSpace(n_components, n_alternatives),
+        n_discrete=draw(st.integers(0, 2)),
+        n_continuous=n_continuous,
+        n_penalties=draw(st.integers(2, 4)),
+        seed=draw(st.integers(0, 2**16)),
+    )
+
+
+@st.composite
+def runs(draw, max_episodes=12, max_steps=8):
+    """A problem and the calls of some episodes."""
+    problem = draw(problems())
+    point = st.tuples(
+        *[st.sampled_from(DISCRETE)] * problem.n_discrete,
+        *[st.sampled_from(CONTINUOUS)] * problem.n_continuous,
+    ).map(np.array)
+    points = draw(st.lists(point, min_size=1, max_size=5))
+    ends = st.one_of(
+        st.tuples(
+            st.just("reward"),
+            st.tuples(st.sampled_from(REWARDS), st.booleans()),
+        ),
+        st.tuples(
+            st.just("penalise"),
+            st.tuples(st.integers(0, problem.n_penalties - 2)),
+        ),
+    )
+    calls = []
+    for _ in range(draw(st.integers(1, max_episodes))):
+        for step in range(draw(st.integers(1, max_steps))):
+            inputs = draw(st.sampled_from(points))
+            if step > 0 and draw(st.integers(0, 9)) == 0:
+                calls.append(draw(ends))
+            calls.append(("advance" if step else "begin_episode", (inputs,)))
+            calls.append(("choose", ()))
+        if draw(st.integers(0, 9)) > 0:
+            calls.append(draw(ends))
+        if draw(st.integers(0, 3)) == 0:
+            calls.append(("finish_subtask", ()))
+        calls.append(("finish_episode", ()))
+        calls.append(("greedy", (draw(st.sampled_from(points)),)))
+    return problem, calls
+
+
+def seeded_calls(problem, rng, episodes=150, steps=12, n_points=7):
+    """Calls of many episodes, a cheaper source than `runs`; mostly they fail."""
+    points = np.column_stack(
+        [rng.choice(DISCRETE, n_points) for _ in range(problem.n_discrete)]
+        + [rng.choice(CONTINUOUS, n_points) for _ in range(problem.n_continuous)]
+    )
+    for _ in range(episodes):
+        length = int(rng.integers(1, steps))
+        place = int(rng.integers(n_points))
+        for step in range(length):
+            yield "advance" if step else "begin_episode", (points[place],)
+            yield "choose", ()
+            # Mostly the next point, so that chains of states repeat.
+            place = (place + (1 if rng.random() < 0.8 else 2)) % n_points
+        if rng.random() < 0.5:
+            yield "penalise", (int(rng.integers(problem.n_penalties - 1)),)
+        else:
+            yield "reward", (float(rng.choice(REWARDS)), bool(rng.random() < 0.7))
+        if rng.random() < 0.3:
+            yield "finish_subtask", ()
+        yield "finish_episode", ()
+        yield "greedy", (points[int(rng.integers(n_points))],)
