@@ -9,6 +9,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import math
+import operator
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -239,7 +240,7 @@ class SimulatedBiped:
         """Read the sensors after a control tick and watch the limits."""
         watch = self._watch
         watch.control_tick += 1
-        states = self.world.joint_states()
+        position, velocity, torque = self.world.joint_states()
         contact = floor_contact(self.world.contacts(), self.world.left_sole, watch.zmp)
         watch.zmp = (contact.zmp_x_m, contact.zmp_y_m)
         zmp_error = math.hypot(
@@ -247,20 +248,12 @@ class SimulatedBiped:
         )
         loaded = contact.left_load_n + contact.right_load_n > 0.0
         watch.unloaded_ticks = 0 if loaded else watch.unloaded_ticks + 1
-        saturated = False
-        fastest = 0.0
-        finite = zmp_error
-        for state, mark in zip(states, self._torque_marks, strict=True):
-            position, speed, _, torque = state
-            finite += position
-            speed = abs(speed)
-            if speed > fastest:
-                fastest = speed
-            if abs(torque) >= mark:
-                saturated = True
+        fastest = max(map(abs, velocity))
+        saturated = any(map(operator.ge, map(abs, torque), self._torque_marks))
         watch.saturated_ticks = watch.saturated_ticks + 1 if saturated else 0
         limits = self.settings.limits
-        if not math.isfinite(finite + fastest):
+        # A sum is finite only if all of its terms are.
+        if not math.isfinite(zmp_error + sum(position) + sum(velocity) + sum(torque)):
             watch.end_cause = EndCause.PHYSICS_NAN
         elif contact.penetration_m > limits.foot_penetration_m:
             watch.end_cause = EndCause.FOOT_THROUGH_FLOOR
@@ -273,7 +266,13 @@ class SimulatedBiped:
         elif watch.unloaded_ticks >= self._unloaded_limit:
             watch.end_cause = EndCause.FEET_UNLOADED
         tick = ControlTick(
-            watch.control_tick, joint_reference, states, contact, zmp_error
+            watch.control_tick,
+            joint_reference,
+            position,
+            velocity,
+            torque,
+            contact,
+            zmp_error,
         )
         if self.on_tick is not None:
             self.on_tick(tick)

@@ -17,8 +17,12 @@ class ControlTick(NamedTuple):
     control_tick: int
     joint_reference: list[float]
     """(12,) [rad]"""
-    joint_states: Any
-    """12 tuples (position [rad], velocity [rad/s], reaction, torque [N m])."""
+    joint_position: tuple[float, ...]
+    """(12,) [rad]"""
+    joint_velocity: tuple[float, ...]
+    """(12,) [rad/s]"""
+    joint_torque: tuple[float, ...]
+    """(12,) [N m]"""
     contact: FloorContact
     zmp_error_m: float
     """Norm of measured minus reference ZMP."""
@@ -49,9 +53,9 @@ def sum_up(
     n = len(ticks)
     if n == 0:
         return TickSums()
-    q = np.array([[state[0] for state in tick.joint_states] for tick in ticks])
-    dq = np.array([[state[1] for state in tick.joint_states] for tick in ticks])
-    torque = np.array([[state[3] for state in tick.joint_states] for tick in ticks])
+    q = np.array([tick.joint_position for tick in ticks])
+    dq = np.array([tick.joint_velocity for tick in ticks])
+    torque = np.array([tick.joint_torque for tick in ticks])
     zmp = np.array([tick.contact[:2] for tick in ticks])
     for measured in (q, dq, torque, zmp):
         trajectory.update(measured.tobytes())

@@ -147,6 +147,11 @@ class World:
             q: reference positions now [rad].
             dq: reference velocities until the next tick [rad/s].
         """
+        self.command(q, dq)
+        pybullet.stepSimulation(physicsClientId=self.client)
+
+    def command(self, q: list[float], dq: list[float]) -> None:
+        """Give the servos their references for the next tick, without stepping."""
         pybullet.setJointMotorControlArray(
             self.robot,
             self.joints,
@@ -158,7 +163,6 @@ class World:
             velocityGains=self._gains[1],
             physicsClientId=self.client,
         )
-        pybullet.stepSimulation(physicsClientId=self.client)
 
     def push(self, force_n: tuple[float, float, float]) -> None:
         """Push the torso at its CoM during the next control tick."""
@@ -176,11 +180,13 @@ class World:
 
     # -- readings ------------------------------------------------------------------
 
-    def joint_states(self) -> Any:
-        """Return 12 tuples (position, velocity, reaction, torque)."""
-        return pybullet.getJointStates(
+    def joint_states(self) -> tuple[tuple[float, ...], ...]:
+        """Return the (12,) positions [rad], velocities [rad/s] and torques [N m]."""
+        states = pybullet.getJointStates(
             self.robot, self.joints, physicsClientId=self.client
         )
+        position, velocity, _, torque = zip(*states, strict=True)
+        return position, velocity, torque
 
     def contacts(self) -> Any:
         """Return PyBullet's contact points, the robot as body A."""

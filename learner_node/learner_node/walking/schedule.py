@@ -47,14 +47,15 @@ class LearningSchedule:
     def count_success(self) -> bool:
         """Count one RWDforSuc; return whether that finished a subtask.
 
-        Beyond the last subtask the target stays the whole walk.
+        Once all subtasks are finished the schedule is complete, and the last one is
+        repeated for as long as learning goes on.
         """
         self.successes += 1
-        if self.complete or self.successes < self._settings.successes_per_subtask:
+        if self.successes < self._settings.successes_per_subtask:
             return False
+        self.successes = 0
         if self.subtask == len(self.targets) - 1:
             self.complete = True
         else:
             self.subtask += 1
-            self.successes = 0
         return True

@@ -126,9 +126,13 @@ class XolAgent:
             k, j = states[paid], alternatives[paid, i]
             rules.q[k, i, j] += value * queue.eligibility[k, i, j]
         if counts:
-            visited = np.unique(states)
-            rules.rewards[visited] += 1
             mode = self.settings.fixed_mode
+            if mode.counted == "episode":
+                chosen_in = rules.last_episode[: self.states.count]
+                visited = np.flatnonzero((chosen_in == self.episode).any(axis=(1, 2)))
+            else:
+                visited = np.unique(states)
+            rules.rewards[visited] += 1
             if mode.strategy == "strategy1":
                 enough = rules.rewards[visited] >= mode.rewards_to_fix
                 self._fix(visited[enough])
@@ -195,14 +199,22 @@ class XolAgent:
         """Number of penalty states."""
         return int(self.rules.penalty_state[: self.states.count].sum())
 
+    def bytes_per_state(self) -> int:
+        """Return the memory that one state takes in all tables."""
+        return (
+            self.states.bytes_per_state()
+            + self.rules.bytes_per_state()
+            + self.queue.bytes_per_state()
+        )
+
     # -- checkpoint --------------------------------------------------------------
 
     def memory(self) -> dict[str, NDArray[Any]]:
         """Return all that was learned, as arrays; valid between episodes."""
         count = self.states.count
         arrays = {
-            "state_discrete": self.states.discrete[:count],
-            "state_centers": self.states.centers[:count],
+            "state_discrete": self.states.discrete,
+            "state_centers": self.states.centers,
             "state_life": self.states.life[:count],
             "episode": np.array(self.episode, dtype=np.int64),
         }
@@ -228,12 +240,10 @@ class XolAgent:
                     f"memory: array {name} is {given.dtype}{given.shape}, "
                     f"this problem needs {own.dtype}{expected}"
                 )
-        self.states.reserve(count)
+        self.states.replace(
+            memory["state_discrete"], memory["state_centers"], memory["state_life"]
+        )
         self._make_room()
-        self.states.count = count
-        self.states.discrete[:count] = memory["state_discrete"]
-        self.states.centers[:count] = memory["state_centers"]
-        self.states.life[:count] = memory["state_life"]
         for name in RuleTable.ARRAYS:
             getattr(self.rules, name)[:count] = memory[name]
         self.rules.clear_from(count)

@@ -95,6 +95,11 @@ class DecisionQueue:
             self._place = doubled(self._place)
             self._place[rows:] = _NO_PLACE
 
+    def bytes_per_state(self) -> int:
+        """Return the memory of one state in the eligibility tables."""
+        arrays = (self.eligibility, self._place)
+        return sum(array.nbytes for array in arrays) // len(self.eligibility)
+
     def clear(self) -> None:
         """Empty the queue and set all E = 0 (2(b))."""
         touched = self.states[: self.filled]

@@ -120,5 +120,5 @@ class RuleTable:
             getattr(self, name)[row:] = self.n_penalties if name == "avoided" else 0
 
     def bytes_per_state(self) -> int:
-        """Memory of one state in these tables."""
+        """Return the memory of one state in these tables."""
         return sum(getattr(self, name)[0].nbytes for name in self.ARRAYS)

@@ -50,6 +50,13 @@ class FixedModeSettings:
     rewards_to_fix: int = setting(
         15, "rewards", "K of Strategy 1: rewards after which a state is fixed", lower=1
     )
+    counted: str = setting(
+        "episode",
+        "",
+        "a reward counts for all states visited in the episode, or only for those still "
+        "in the queue",
+        choices=("episode", "queue"),
+    )
     released_states: int = setting(
         3, "states", "how many fixed states ahead of a penalty are released", lower=0
     )

@@ -18,46 +18,48 @@ from learner_node.xol.settings import StateSettings
 
 NO_STATE = -1
 _FIRST_CAPACITY = 64
+_BLOCK = 512
 # Two centres of one grid cell differ by rounding only.
 _SAME_CELL_SQUARED_DISTANCE = 1e-6
 
 
 @njit(cache=True)
 def nearest_state(
-    discrete: NDArray[Any],
+    group: int,
     point: NDArray[Any],
-    state_discrete: NDArray[Any],
+    state_groups: NDArray[Any],
     state_centers: NDArray[Any],
     count: int,
 ) -> tuple[int, float]:
-    """Return (index, squared distance) of the nearest state of the same partition.
+    """Return (index, squared distance) of the nearest state of the same group.
+
+    Looks at all of them: a few microseconds for thousands, since centres are stored by
+    column and distances are added up in blocks that the processor does in parallel.
 
     Args:
-        discrete: (n_discrete,) discrete inputs, compared exactly.
+        group: number of the combination of discrete inputs.
         point: (n_continuous,) continuous inputs in units of their radii.
-        state_discrete: (capacity, n_discrete) discrete inputs of the states.
-        state_centers: (capacity, n_continuous) centres in units of the radii.
-        count: how many rows are in use.
+        state_groups: (capacity,) groups of the states.
+        state_centers: (n_continuous, capacity) centres in units of the radii.
+        count: how many states there are.
     """
     best = -1
     best_squared = math.inf
-    n_discrete = discrete.shape[0]
-    n_continuous = point.shape[0]
-    for k in range(count):
-        same = True
-        for d in range(n_discrete):
-            if state_discrete[k, d] != discrete[d]:
-                same = False
-                break
-        if not same:
-            continue
-        squared = 0.0
-        for c in range(n_continuous):
-            difference = state_centers[k, c] - point[c]
-            squared += difference * difference
-        if squared < best_squared:
-            best_squared = squared
-            best = k
+    squared = np.empty(_BLOCK)
+    for start in range(0, count, _BLOCK):
+        n = min(_BLOCK, count - start)
+        squared[:n] = 0.0
+        for c in range(point.shape[0]):
+            x = point[c]
+            column = state_centers[c, start : start + n]
+            for k in range(n):
+                difference = column[k] - x
+                squared[k] += difference * difference
+        groups = state_groups[start : start + n]
+        for k in range(n):
+            if squared[k] < best_squared and groups[k] == group:
+                best_squared = squared[k]
+                best = start + k
     return best, best_squared
 
 
@@ -91,9 +93,21 @@ class BasisStates:
             else _SAME_CELL_SQUARED_DISTANCE
         )
         self.count = 0
-        self.discrete = np.zeros((_FIRST_CAPACITY, n_discrete))
-        self.centers = np.zeros((_FIRST_CAPACITY, n_continuous))
         self.life = np.zeros(_FIRST_CAPACITY, dtype=np.int64)
+        self._discrete = np.zeros((_FIRST_CAPACITY, n_discrete))
+        self._columns = np.zeros((n_continuous, _FIRST_CAPACITY))
+        self._groups = np.zeros(_FIRST_CAPACITY, dtype=np.int64)
+        self._group_of: dict[bytes, int] = {}
+
+    @property
+    def discrete(self) -> NDArray[np.float64]:
+        """(count, n_discrete) discrete inputs of the states."""
+        return self._discrete[: self.count]
+
+    @property
+    def centers(self) -> NDArray[np.float64]:
+        """(count, n_continuous) centres in units of the radii."""
+        return self._columns[:, : self.count].T
 
     @property
     def capacity(self) -> int:
@@ -113,20 +127,48 @@ class BasisStates:
         if not self._gaussian:
             point = np.rint(point)
         k, squared = nearest_state(
-            discrete, point, self.discrete, self.centers, self.count
+            self._group_of.get(discrete.tobytes(), NO_STATE),
+            point,
+            self._groups,
+            self._columns,
+            self.count,
         )
         if create:
             if squared > self._reach_squared:
                 k = self._append(discrete, point)
             self.life[k] = self.settings.life_episodes
-        return int(k)
+        return k
+
+    def replace(
+        self,
+        discrete: NDArray[np.float64],
+        centers: NDArray[np.float64],
+        life: NDArray[np.int64],
+    ) -> None:
+        """Take over other states, all of them.
+
+        Args:
+            discrete: (count, n_discrete) discrete inputs.
+            centers: (count, n_continuous) centres in units of the radii.
+            life: (count,) episodes left.
+        """
+        self.count = 0
+        for row, center in zip(discrete, centers, strict=True):
+            self._append(row, center)
+        self.life[: self.count] = life
 
     def reserve(self, capacity: int) -> None:
         """Make room for at least `capacity` states."""
         while self.capacity < capacity:
-            self.discrete = doubled(self.discrete)
-            self.centers = doubled(self.centers)
             self.life = doubled(self.life)
+            self._groups = doubled(self._groups)
+            self._discrete = doubled(self._discrete)
+            self._columns = doubled(self._columns.T).T.copy()
+
+    def bytes_per_state(self) -> int:
+        """Return the memory of one state."""
+        arrays = (self.life, self._groups, self._discrete, self._columns)
+        return sum(array.nbytes for array in arrays) // self.capacity
 
     def age(self, kept: NDArray[np.bool_]) -> NDArray[np.int64] | None:
         """Let every state live one episode less and forget those whose life is over.
@@ -144,16 +186,20 @@ class BasisStates:
             return None
         remaining = np.flatnonzero(alive)
         n = len(remaining)
-        for array in (self.discrete, self.centers, self.life):
-            array[:n] = array[remaining]
+        self.life[:n] = self.life[remaining]
+        self._groups[:n] = self._groups[remaining]
+        self._discrete[:n] = self._discrete[remaining]
+        self._columns[:, :n] = self._columns[:, remaining]
         self.count = n
         return remaining
 
     def _append(self, discrete: NDArray[np.float64], point: NDArray[np.float64]) -> int:
         self.reserve(self.count + 1)
         k = self.count
-        self.discrete[k] = discrete
-        self.centers[k] = point
+        key = discrete.tobytes()
+        self._groups[k] = self._group_of.setdefault(key, len(self._group_of))
+        self._discrete[k] = discrete
+        self._columns[:, k] = point
         self.count += 1
         return k
 

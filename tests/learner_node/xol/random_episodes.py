@@ -117,21 +117,25 @@ def runs(draw, max_episodes=12, max_steps=8):
     return problem, calls
 
 
-def seeded_calls(problem, rng, episodes=150, steps=12, n_points=7):
-    """Calls of many episodes, a cheaper source than `runs`; mostly they fail."""
+def seeded_calls(problem, rng, episodes=200, steps=12, n_points=7):
+    """Calls of many episodes, a cheaper source than `runs`.
+
+    The points follow one another with few exceptions, so that chains of states repeat;
+    spells of failures alternate with spells of rewards, and one point is rare.
+    """
     points = np.column_stack(
         [rng.choice(DISCRETE, n_points) for _ in range(problem.n_discrete)]
         + [rng.choice(CONTINUOUS, n_points) for _ in range(problem.n_continuous)]
     )
-    for _ in range(episodes):
-        length = int(rng.integers(1, steps))
+    rare = np.full(points.shape[1], DISCRETE[0])
+    for episode in range(episodes):
         place = int(rng.integers(n_points))
-        for step in range(length):
-            yield "advance" if step else "begin_episode", (points[place],)
+        for step in range(int(rng.integers(1, steps))):
+            inputs = rare if rng.random() < 0.01 else points[place]
+            yield "advance" if step else "begin_episode", (inputs,)
             yield "choose", ()
-            # Mostly the next point, so that chains of states repeat.
             place = (place + (1 if rng.random() < 0.8 else 2)) % n_points
-        if rng.random() < 0.5:
+        if rng.random() < (0.9 if episode % 50 < 25 else 0.1):
             yield "penalise", (int(rng.integers(problem.n_penalties - 1)),)
         else:
             yield "reward", (float(rng.choice(REWARDS)), bool(rng.random() < 0.7))

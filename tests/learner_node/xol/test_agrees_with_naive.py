@@ -103,6 +103,26 @@ def test_long_runs_end_in_the_same_memory(name, seed):
     assert first_disagreement(*long_run(name, seed)) is None
 
 
+def run_of_many_states():
+    many = replace(BASE, states=StateSettings(radii=(1.0,) * 3, life_episodes=30))
+    problem = Problem(many, ActionSpace(2, 3), 2, 3, 3, seed=0)
+    calls = seeded_calls(problem, np.random.default_rng(0), n_points=150)
+    return problem, calls
+
+
+def test_more_states_than_first_fit_end_in_the_same_memory():
+    assert first_disagreement(*run_of_many_states()) is None
+
+
+def test_the_run_of_many_states_has_more_than_first_fit():
+    problem, calls = run_of_many_states()
+    agent = problem.learner()
+    room = agent.states.capacity
+    for method, arguments in calls:
+        getattr(agent, method)(*arguments)
+    assert agent.basis_states > room
+
+
 def incidents(problem, calls):
     """Kinds of things that happen to an agent in these calls."""
     agent = problem.learner()

@@ -1,6 +1,6 @@
 """Learn with many seeds and report every one of them, the unfinished ones too.
 
-    python -m biped_lab.seed_study --seeds 101-120 --out bags/paper_seeds -- --preset paper
+    python -m biped_lab.seed_study --seeds 101-120 --out bags/seeds -- --preset paper
 
 What follows `--` goes to `biped learn`. Each seed is a process of its own; its figures
 are appended to `runs.jsonl` in the folder, and a seed that stands there already is not
@@ -113,7 +113,8 @@ def _row(run: dict[str, Any]) -> str:
         f"  greedy {run['greedy_episodes'] or '-':>5}  episodes {run['episodes']:5d}"
         f"  simulated {run['simulated_s']:7.0f} s  CPU {run['cpu_s']:5.0f} s"
         f"  states {run['basis_states']}/{run['fixed_states']}/{run['penalty_states']}"
-        f"  walk {walk['control_ticks']} ticks, {1000 * walk['peak_zmp_error_m']:.1f} mm"
+        f"  walk {walk['control_ticks']} ticks,"
+        f" {1000 * walk['peak_zmp_error_m']:.1f} mm"
     )
 
 

@@ -39,9 +39,9 @@ def add_parser(verbs: Any) -> None:
         "learn",
         help="learn the walk, until a frozen greedy walk succeeds",
         description="Learn the walk in this process. Ends when the schedule is "
-        "complete and a frozen greedy walk of the whole walk succeeds. Ctrl-C ends it after the "
-        "running episode, with everything saved. Exit status 0 when learned, 1 when "
-        "the episodes ran out, 130 when interrupted.",
+        "complete and a frozen greedy walk of the whole walk succeeds. Ctrl-C ends it "
+        "after the running episode, with everything saved. Exit status 0 when learned, "
+        "1 when the episodes ran out, 130 when interrupted.",
     )
     parser.add_argument(
         "--seed", type=natural, metavar="N", help="of every random draw (default 0)"
@@ -141,7 +141,7 @@ def _stop_requests() -> Iterator[list[int]]:
         requests.append(number)
         signal.signal(number, old[number])
 
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (int(signal.SIGINT), int(signal.SIGTERM)):
         old[number] = signal.signal(number, request)
     try:
         yield requests

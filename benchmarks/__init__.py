@@ -1,0 +1,1 @@
+"""Speed and memory, with the bounds that the project promises."""

@@ -1,0 +1,35 @@
+"""The words for a walk's end."""
+
+import msgspec
+import pytest
+
+from msgs_json.end_cause import EndCause
+
+
+def test_these_are_all_the_words():
+    assert [cause.value for cause in EndCause] == [
+        "completed",
+        "zmp_error",
+        "joint_velocity",
+        "ik_unreachable",
+        "ik_joint_limit",
+        "torque_saturation",
+        "feet_unloaded",
+        "foot_through_floor",
+        "physics_nan",
+    ]
+
+
+@pytest.mark.parametrize("cause", EndCause)
+def test_a_cause_prints_as_its_word(cause):
+    assert f"{cause}" == cause.value
+
+
+@pytest.mark.parametrize("cause", EndCause)
+def test_a_cause_is_found_by_its_word(cause):
+    assert EndCause(cause.value) is cause
+
+
+@pytest.mark.parametrize("cause", EndCause)
+def test_a_cause_is_its_word_in_json(cause):
+    assert msgspec.json.encode(cause) == f'"{cause.value}"'.encode()

@@ -1,0 +1,63 @@
+"""What the simulated robot's settings allow."""
+
+import dataclasses
+import math
+
+import pytest
+
+from msgs_json.settings import SettingsError, from_mapping, to_mapping
+from sim_node.settings import DisturbanceSettings, LimitSettings, SimSettings
+
+FIELDS = [
+    (cls, field.name)
+    for cls in (LimitSettings, DisturbanceSettings)
+    for field in dataclasses.fields(cls)
+]
+EVERY_FIELD = pytest.mark.parametrize(
+    ("cls", "name"), FIELDS, ids=[name for _, name in FIELDS]
+)
+
+
+def test_the_limits_of_the_paper_are_the_defaults():
+    limits = LimitSettings()
+    found = limits.zmp_error_m, limits.joint_velocity_rad_s
+    assert found == (0.065, pytest.approx(20 * math.pi))
+
+
+def test_settings_come_back_from_their_mapping():
+    settings = SimSettings(
+        LimitSettings(zmp_error_m=0.05), DisturbanceSettings(friction=0.3)
+    )
+    assert from_mapping(SimSettings, to_mapping(settings)) == settings
+
+
+def test_an_error_has_a_dotted_key():
+    with pytest.raises(SettingsError, match=r"^limits\.zmp_error_m = 0\.0: must be"):
+        from_mapping(SimSettings, {"limits": {"zmp_error_m": 0.0}})
+
+
+@EVERY_FIELD
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_every_number_must_be_finite(cls, name, value):
+    with pytest.raises(SettingsError, match=f"^{name} = {value}: must be a finite"):
+        cls(**{name: value})
+
+
+@EVERY_FIELD
+def test_no_number_may_be_negative(cls, name):
+    with pytest.raises(SettingsError, match=f"^{name} = -0.5: must be"):
+        cls(**{name: -0.5})
+
+
+@EVERY_FIELD
+def test_every_setting_says_what_it_means(cls, name):
+    assert cls.__dataclass_fields__[name].metadata["doc"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("friction", 11.0), ("mass_error", 0.31), ("torque_limit_factor", 1.1)],
+)
+def test_a_disturbance_beyond_reason_is_refused(name, value):
+    with pytest.raises(SettingsError, match=f"^{name} = "):
+        DisturbanceSettings(**{name: value})
