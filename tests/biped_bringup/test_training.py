@@ -10,7 +10,7 @@ from biped_bringup.run_settings import load_settings
 from msgs_json.episode_result import EpisodeResult
 
 EPISODES = 30  # enough that penalties, releases and both supports are met
-SHORT_EPISODES = 8
+SHORT_EPISODES = 5
 
 
 def go_on(_: EpisodeResult) -> bool:
@@ -74,7 +74,7 @@ def test_a_run_with_a_memory_of_its_own_does_not_touch_another(training):
 
 
 @pytest.mark.parametrize("disturbances", [(), DISTURBED], ids=["calm", "disturbed"])
-@pytest.mark.parametrize("saved_after", [0, 1, 5])
+@pytest.mark.parametrize("saved_after", [1, 3])
 def test_a_resumed_run_is_as_if_never_interrupted(
     training, uninterrupted, tmp_path, saved_after, disturbances
 ):
@@ -92,10 +92,10 @@ def test_the_resumed_runs_above_cross_a_step_of_the_schedule(uninterrupted):
 
 
 def test_a_resumed_run_goes_on_through_failures(training, uninterrupted, tmp_path):
-    learn(training(quick()), 6).save(tmp_path / "memory.npz")
-    resumed = learn(training(tmp_path / "memory.npz"), EPISODES)
-    assert not all(resumed.log.arrays()["reward"][6:] > 0.0)
-    assert record(resumed) == uninterrupted(quick()).after(EPISODES)
+    learn(training(quick()), 4).save(tmp_path / "memory.npz")
+    resumed = learn(training(tmp_path / "memory.npz"), 12)
+    assert 0.0 in resumed.log.arrays()["reward"][4:]
+    assert record(resumed) == uninterrupted(quick()).after(12)
 
 
 def test_saving_after_every_episode_changes_nothing(training, uninterrupted, tmp_path):

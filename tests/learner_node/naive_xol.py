@@ -268,7 +268,11 @@ class NaiveXol:
                         decision.state.Q[i][j] += value * decision.state.E[i][j]
         if counts:
             mode = self.settings.fixed_mode
-            for state in self.last_states(len(self.queue)):
+            if mode.counted == "episode":
+                visited = [state for state in self.states if state.selected]
+            else:
+                visited = self.last_states(len(self.queue))
+            for state in visited:
                 state.TUC += 1
                 enough = mode.rewards_to_fix <= state.TUC
                 if mode.strategy == "strategy1" and enough:

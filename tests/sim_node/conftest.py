@@ -59,6 +59,12 @@ class Walker:
         )
 
     @property
+    def load_n(self) -> np.ndarray:
+        """(ticks,) load on both feet together."""
+        contacts = [tick.contact for tick in self.ticks]
+        return np.array([each.left_load_n + each.right_load_n for each in contacts])
+
+    @property
     def everything(self) -> np.ndarray:
         """(ticks, ...) all numbers that the ticks carry, for comparison bit by bit."""
         contacts = np.array([(*t.contact, t.zmp_error_m) for t in self.ticks])

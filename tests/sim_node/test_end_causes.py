@@ -6,6 +6,7 @@ import numpy as np
 import pybullet
 import pytest
 
+from biped_description.joints import TORQUE_LIMIT
 from msgs_json.end_cause import EndCause
 
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -70,6 +71,14 @@ def test_saturation_must_last_before_it_ends_the_walk(
     assert (end.end_cause, end.control_tick) == (EndCause.TORQUE_SATURATION, ticks)
 
 
+def test_a_saturation_that_eases_off_starts_anew(new_walker, shaky_walk):
+    lasting = {"torque_saturation_s": 0.8, "zmp_error_m": 1.0}
+    walker = new_walker(lasting, {"torque_limit_factor": 0.35})
+    assert walker.walk(shaky_walk)[-1].end_cause is EndCause.TORQUE_SATURATION
+    saturated = (np.abs(walker.joints[2]) >= 0.999 * 0.35 * TORQUE_LIMIT).any(axis=1)
+    assert (saturated[-400:].all(), saturated[:-400].sum() > 400) == (True, True)
+
+
 def test_a_robot_in_the_air_has_its_feet_unloaded(walker, static_walk):
     walker.walk(static_walk[:1])
     raise_robot(walker, 0.5)
@@ -91,8 +100,18 @@ def test_a_hop_shorter_than_that_is_forgiven(new_walker, static_walk):
     walker.walk(static_walk[:1])
     raise_robot(walker, 0.002)  # 20 ms of free fall
     walker.go_on(static_walk[1:15])
-    unloaded = [t.contact.left_load_n + t.contact.right_load_n == 0 for t in walker.ticks]  # fmt: skip  # noqa: E501
-    assert (5 < sum(unloaded) < 50, len(unloaded)) == (True, 150)
+    unloaded_ticks = np.count_nonzero(walker.load_n == 0.0)
+    assert (5 < unloaded_ticks < 50, len(walker.ticks)) == (True, 150)
+
+
+def test_the_time_of_several_hops_does_not_add_up(new_walker, static_walk):
+    walker = new_walker({"unloaded_feet_s": 0.05, "zmp_error_m": 1.0})
+    walker.walk(static_walk[:1])
+    for hop in range(4):
+        raise_robot(walker, 0.002)
+        walker.go_on(static_walk[1 + 5 * hop : 6 + 5 * hop])
+    unloaded_ticks = np.count_nonzero(walker.load_n == 0.0)
+    assert (unloaded_ticks > 25, len(walker.ticks)) == (True, 210)
 
 
 def test_a_robot_pressed_into_the_floor_is_a_fault(walker, static_walk):

@@ -59,15 +59,15 @@ def test_another_walk_in_between_does_not_matter(
     new_walker, shaky_walk, static_walk, disturbances
 ):
     walker = new_walker(STURDY, disturbances)
-    walker.walk(shaky_walk[:80])
+    walker.walk(shaky_walk[:72])
     snapshot = walker.robot.snapshot()
     walker.forget()
-    walker.go_on(shaky_walk[80:END])
+    walker.go_on(shaky_walk[72:END])
     expected = walker.everything
     walker.walk(static_walk[:110], episode=2)
     walker.robot.restore(snapshot)
     walker.forget()
-    walker.go_on(shaky_walk[80:END])
+    walker.go_on(shaky_walk[72:END])
     np.testing.assert_array_equal(walker.everything, expected)
 
 

@@ -53,7 +53,7 @@ class FixedModeSettings:
     counted: str = setting(
         "episode",
         "",
-        "a reward counts for all states visited in the episode, or only for those still "
+        "a reward counts for all states visited in the episode, or only those still "
         "in the queue",
         choices=("episode", "queue"),
     )

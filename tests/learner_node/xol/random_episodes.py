@@ -65,6 +65,7 @@ def problems(draw):
         fixed_mode=FixedModeSettings(
             strategy=draw(st.sampled_from(("strategy1", "strategy2", "none"))),
             rewards_to_fix=draw(st.integers(1, 3)),
+            counted=draw(st.sampled_from(("episode", "queue"))),
             released_states=draw(st.integers(0, 3)),
             release=draw(st.sampled_from(("last_decisions", "nearest"))),
         ),

@@ -85,6 +85,9 @@ LONG_RUNS = {
     "nearest": replace(
         BASE, fixed_mode=FixedModeSettings(rewards_to_fix=2, release="nearest")
     ),
+    "queue": replace(
+        BASE, fixed_mode=FixedModeSettings(rewards_to_fix=2, counted="queue")
+    ),
     "undecomposed": replace(BASE, decomposed=False),
     "uniform": replace(
         BASE, states=StateSettings(basis="uniform", radii=(1.0,), life_episodes=8)

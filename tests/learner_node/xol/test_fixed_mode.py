@@ -67,6 +67,25 @@ def test_a_reward_counts_once_per_state():
     assert [rewards_of(agent, letter) for letter in "AB"] == [1, 1]
 
 
+def test_a_reward_counts_for_all_states_of_the_episode():
+    agent = new_agent(queue_length=2)
+    rewarded_walk(agent, "ABCD", "0000")
+    assert [rewards_of(agent, letter) for letter in "ABCD"] == [1, 1, 1, 1]
+
+
+def test_a_reward_may_count_in_the_queue_only():
+    agent = new_agent(queue_length=2, fixed_mode={**STRATEGY_1, "counted": "queue"})
+    rewarded_walk(agent, "ABCD", "0000")
+    assert [rewards_of(agent, letter) for letter in "ABCD"] == [0, 0, 1, 1]
+
+
+def test_a_reward_does_not_count_for_states_of_other_episodes():
+    agent = new_agent()
+    rewarded_walk(agent, "A", "0")
+    rewarded_walk(agent, "B", "0")
+    assert rewards_of(agent, "A") == 1
+
+
 def test_a_reward_may_not_count():
     agent = new_agent(fixed_mode=AT_ONCE)
     rewarded_walk(agent, "AB", "00", counts=False)

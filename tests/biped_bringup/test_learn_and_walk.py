@@ -1,0 +1,243 @@
+"""`biped learn` and `biped walk` as a script uses them: JSON, files, exit status."""
+
+import csv
+import json
+import struct
+from pathlib import Path
+
+import pytest
+
+from biped_bringup.training import TrainingRun
+from tests.biped_bringup.runs import SHORT
+
+SHORT_LEARN = ("learn", "--json", "--preset", "quick", "--out", "out") + tuple(
+    word for change in SHORT for word in ("--set", change)
+)
+SHORT_STATIC = ("walk", "--json", "--static", "--set", "gait.steps=1")
+STATIC = ("walk", "--json", "--static")
+
+LEARN_KEYS = {
+    "completed",
+    "target_time_s",
+    "episodes",
+    "simulated_s",
+    "cpu_s",
+    "basis_states",
+    "fixed_states",
+    "penalty_states",
+    "memory_sha256",
+    "trajectory_sha256",
+    "memory_file",
+}
+WALK_KEYS = {
+    "end_cause",
+    "end_time_s",
+    "completed",
+    "peak_zmp_error_m",
+    "peak_joint_velocity_rad_s",
+    "t_err",
+    "t_err_terms",
+    "trajectory_sha256",
+}
+TERMS = [
+    "zmp",
+    "final_zmp",
+    "joint_tracking",
+    "joint_torque",
+    "final_joint_position",
+    "final_joint_velocity",
+]
+
+
+def png_size(file: Path) -> tuple[int, int]:
+    """Width and height of a PNG [pixels]."""
+    head = file.read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", head[16:24])
+
+
+# -- learning ----------------------------------------------------------------------
+
+
+def test_what_is_learned_in_one_process_is_walked_in_another(biped_process):
+    learned = biped_process(*SHORT_LEARN)
+    assert (learned.status, learned.values["completed"]) == (0, True)
+    memory_file = learned.values["memory_file"]
+    walked = biped_process("walk", "--json", "--memory", memory_file)
+    assert (walked.status, walked.values["completed"]) == (0, True)
+
+
+def test_standard_output_of_a_process_is_one_json_object(biped_process):
+    outcome = biped_process(*SHORT_LEARN, "--episodes", 1)
+    assert json.loads(outcome.out).keys() >= LEARN_KEYS
+
+
+def test_episodes_that_run_out_are_no_success(biped):
+    outcome = biped(*SHORT_LEARN, "--episodes", 2)
+    assert (outcome.status, outcome.values["completed"]) == (1, False)
+    assert outcome.values["episodes"] == 2
+
+
+def test_learning_can_end_with_the_schedule(biped):
+    outcome = biped(*SHORT_LEARN, "--stop-at-schedule")
+    assert outcome.status == 0
+    assert outcome.values["schedule_episodes"] == outcome.values["episodes"]
+
+
+def test_the_figures_of_a_run_fit_together(biped):
+    values = biped(*SHORT_LEARN).values
+    assert values["target_time_s"] == 3.75
+    assert 0 < values["simulated_s"] <= values["episodes"] * values["target_time_s"]
+    assert values["fixed_states"] + values["penalty_states"] <= values["basis_states"]
+    assert values["cpu_s"] > 0.0
+
+
+def test_the_reported_hashes_are_those_of_the_memory(biped):
+    values = biped(*SHORT_LEARN, "--episodes", 2).values
+    run = TrainingRun.load(Path(values["memory_file"]))
+    run.close()
+    assert values["memory_sha256"] == run.learner.memory_sha256()
+    assert values["trajectory_sha256"] == run.tally.trajectories_sha256
+
+
+def test_the_seed_is_zero_unless_given(biped):
+    first, second = (
+        biped(*SHORT_LEARN, "--episodes", 1, *seed).values["memory_sha256"]
+        for seed in ((), ("--seed", 0))
+    )
+    assert first == second
+
+
+def test_the_log_has_a_row_per_episode(biped, tmp_path):
+    episodes = biped(*SHORT_LEARN, "--episodes", 3).values["episodes"]
+    with (tmp_path / "out" / "episodes.csv").open() as log:
+        rows = list(csv.DictReader(log))
+    assert [int(row["episode"]) for row in rows] == list(range(1, episodes + 1))
+
+
+def test_nothing_but_memory_and_log_is_left_behind(biped, tmp_path):
+    biped(*SHORT_LEARN, "--episodes", 2, "--checkpoint-every", 0)
+    left = sorted(file.name for file in (tmp_path / "out").iterdir())
+    assert left == ["episodes.csv", "memory.npz"]
+
+
+def test_a_resumed_run_stays_in_its_folder(biped, tmp_path):
+    biped(*SHORT_LEARN, "--episodes", 1)
+    resumed = biped("learn", "--json", "--resume", "out/memory.npz", "--episodes", 2)
+    assert resumed.values["memory_file"] == "out/memory.npz"
+    assert [file.name for file in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_resumed_run_can_go_to_another_folder(biped, tmp_path):
+    biped(*SHORT_LEARN, "--episodes", 1)
+    memory = (tmp_path / "out" / "memory.npz").read_bytes()
+    biped("learn", "--resume", "out/memory.npz", "--out", "more", "--episodes", 2)
+    assert (tmp_path / "more" / "memory.npz").exists()
+    assert (tmp_path / "out" / "memory.npz").read_bytes() == memory
+
+
+def test_without_json_a_run_is_reported_in_words(biped):
+    words = [word for word in SHORT_LEARN if word != "--json"]
+    out = biped(*words).out
+    assert out.startswith("learned: a frozen greedy walk completes the whole walk\n")
+    assert "out/memory.npz" in out
+
+
+# -- walking -----------------------------------------------------------------------
+
+
+def test_a_static_walk_falls_in_the_first_step(biped):
+    outcome = biped(*STATIC)
+    assert outcome.status == 1
+    assert outcome.values["end_cause"] == "zmp_error"
+    assert 2.0 <= outcome.values["end_time_s"] <= 2.4
+
+
+def test_a_static_walk_with_more_double_support_is_completed(biped):
+    outcome = biped(*STATIC, "--tds", 1.3)
+    assert outcome.status == 0
+    assert outcome.values["end_cause"] == "completed"
+    assert outcome.values["end_time_s"] == 11.25
+
+
+def test_a_walk_is_reported_with_these_keys(biped):
+    assert biped(*SHORT_STATIC).values.keys() >= WALK_KEYS
+
+
+def test_t_err_is_the_sum_of_its_six_terms(biped):
+    values = biped(*SHORT_STATIC).values
+    assert list(values["t_err_terms"]) == TERMS
+    total = sum(values["t_err_terms"].values())
+    assert values["t_err"] == pytest.approx(total, rel=1e-12)
+
+
+def test_standard_output_of_a_walking_process_is_one_json_object(biped_process):
+    outcome = biped_process(*SHORT_STATIC)
+    assert json.loads(outcome.out).keys() >= WALK_KEYS
+
+
+def test_tds_is_short_for_the_double_support_time(biped):
+    short = biped(*SHORT_STATIC, "--tds", 1.3).values
+    assert short == biped(*SHORT_STATIC, "--set", "gait.double_support_s=1.3").values
+
+
+def test_without_disturbances_the_seed_of_a_walk_does_not_matter(biped):
+    walks = [biped(*SHORT_STATIC, "--seed", seed).values for seed in (0, 1)]
+    assert walks[0] == walks[1]
+
+
+def test_the_seed_of_a_walk_draws_its_disturbances(biped):
+    pushed = ("--set", "sim.disturbances.push_force_n=10")
+    same, again, other = (
+        biped(*SHORT_STATIC, *pushed, "--seed", seed).values["trajectory_sha256"]
+        for seed in (4, 4, 5)
+    )
+    assert same == again != other
+
+
+def test_a_memory_walks_as_it_was_learned(biped):
+    learned = biped(*SHORT_LEARN).values
+    run = TrainingRun.load(Path(learned["memory_file"]))
+    run.greedy_walk()
+    run.close()
+    walked = biped("walk", "--json", "--memory", learned["memory_file"]).values
+    assert walked["trajectory_sha256"] == run.walker.biped.trajectory_sha256
+
+
+def test_walking_does_not_change_the_memory(biped, tmp_path):
+    biped(*SHORT_LEARN, "--episodes", 1)
+    memory = (tmp_path / "out" / "memory.npz").read_bytes()
+    biped("walk", "--memory", "out/memory.npz")
+    assert (tmp_path / "out" / "memory.npz").read_bytes() == memory
+
+
+def test_a_memory_can_be_tried_on_another_gait(biped):
+    biped(*SHORT_LEARN, "--episodes", 1)
+    walked = biped("walk", "--json", "--memory", "out/memory.npz", "--tds", 1.3).values
+    static = biped(*SHORT_STATIC, "--tds", 1.3).values
+    assert walked["end_time_s"] == static["end_time_s"] == 3.75
+    assert walked["trajectory_sha256"] != static["trajectory_sha256"]
+
+
+def test_without_json_a_walk_is_reported_in_words(biped):
+    out = biped("walk", "--static", "--set", "gait.steps=1").out
+    assert out.startswith("end                  completed after 3.750 s of 3.75 s\n")
+    assert "peak ZMP error" in out
+    assert "T_err" in out
+
+
+@pytest.mark.parametrize("changes", [(), ("--set", "gait.steps=1")])
+def test_the_figure_of_a_walk_is_a_picture(biped, tmp_path, changes):
+    biped("walk", "--static", "--figure", "zmp.png", *changes)
+    assert png_size(tmp_path / "zmp.png") == (1080, 1080)
+    assert 20_000 < (tmp_path / "zmp.png").stat().st_size < 1_000_000
+
+
+@pytest.mark.parametrize("name", ["zmp", "zmp.walk"])
+def test_the_figure_is_drawn_where_it_was_asked_for_or_not_at_all(
+    biped, tmp_path, name
+):
+    outcome = biped("walk", *SHORT_STATIC[2:], "--figure", name)
+    drawn = [file.name for file in tmp_path.iterdir()]
+    assert drawn == ([name] if outcome.status == 0 else [])
+    assert outcome.status in (0, 2)
