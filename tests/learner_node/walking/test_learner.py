@@ -367,7 +367,7 @@ def test_a_walk_broken_off_is_not_learned_from():
 # -- interruption ---------------------------------------------------------------------
 
 
-def mixed_results(learner, rng, walks=12):
+def mixed_results(learner, rng, walks):
     """Results of walks that fail or succeed at random."""
     results = []
     for _ in range(walks):
@@ -378,14 +378,16 @@ def mixed_results(learner, rng, walks=12):
     return results
 
 
-def test_a_restored_learner_goes_on_as_if_never_interrupted():
+@pytest.mark.parametrize("walks_before", range(6))
+def test_a_restored_learner_goes_on_as_if_never_interrupted(walks_before):
     learner, restored = new_learner(), new_learner()
-    mixed_results(learner, np.random.default_rng(1))
+    mixed_results(learner, np.random.default_rng(1), walks_before)
     restored.restore(learner.progress(), learner.agent.memory())
-    ways = [
-        mixed_results(each, np.random.default_rng(2)) for each in (learner, restored)
-    ]
-    assert ways[0] == ways[1]
+    first, second = (
+        mixed_results(each, np.random.default_rng(2), walks=12)
+        for each in (learner, restored)
+    )
+    assert first == second
     assert learner.memory_sha256() == restored.memory_sha256()
 
 

@@ -23,7 +23,7 @@ SETTINGS = XolSettings(
     minimum_selections=1,
     base_weight=1e12,
     states=StateSettings(radii=(1.0,)),
-    fixed_mode=FixedModeSettings(rewards_to_fix=NEVER),
+    fixed_mode=FixedModeSettings(rewards_to_fix=NEVER, patience_episodes=0),
 )
 
 
@@ -40,7 +40,7 @@ class Draws:
 def new_agent(n_alternatives=2, n_components=1, fixed_mode=None, **changes):
     """An agent for one continuous input and three kinds of penalty."""
     if fixed_mode is not None:
-        changes["fixed_mode"] = FixedModeSettings(**fixed_mode)
+        changes["fixed_mode"] = replace(SETTINGS.fixed_mode, **fixed_mode)
     return XolAgent(
         replace(SETTINGS, **changes),
         ActionSpace(n_components, n_alternatives),

@@ -70,6 +70,10 @@ def test_random_episodes_end_in_the_same_memory(run):
     assert first_disagreement(*run) is None
 
 
+def with_fixed_mode(**changes):
+    return replace(BASE, fixed_mode=replace(BASE.fixed_mode, **changes))
+
+
 BASE = XolSettings(
     discount=0.9,
     queue_length=9,
@@ -78,25 +82,19 @@ BASE = XolSettings(
     failure_threshold=0.5,
     base_weight=2.0,
     states=StateSettings(radii=(1.0,), life_episodes=8),
-    fixed_mode=FixedModeSettings(rewards_to_fix=2),
+    fixed_mode=FixedModeSettings(
+        rewards_to_fix=2, counted="queue", patience_episodes=0
+    ),
 )
 LONG_RUNS = {
     "strategy1": BASE,
-    "strategy2": replace(BASE, fixed_mode=FixedModeSettings(strategy="strategy2")),
-    "none": replace(BASE, fixed_mode=FixedModeSettings(strategy="none")),
-    "nearest": replace(
-        BASE, fixed_mode=FixedModeSettings(rewards_to_fix=2, release="nearest")
-    ),
-    "queue": replace(
-        BASE, fixed_mode=FixedModeSettings(rewards_to_fix=2, counted="queue")
-    ),
-    "impatient": replace(
-        BASE, fixed_mode=FixedModeSettings(rewards_to_fix=2, patience_episodes=2)
-    ),
+    "strategy2": with_fixed_mode(strategy="strategy2"),
+    "none": with_fixed_mode(strategy="none"),
+    "nearest": with_fixed_mode(release="nearest"),
+    "episode": with_fixed_mode(counted="episode"),
+    "impatient": with_fixed_mode(patience_episodes=2),
     "undecomposed": replace(BASE, decomposed=False),
-    "uniform": replace(
-        BASE, states=StateSettings(basis="uniform", radii=(1.0,), life_episodes=8)
-    ),
+    "uniform": replace(BASE, states=replace(BASE.states, basis="uniform")),
 }
 
 

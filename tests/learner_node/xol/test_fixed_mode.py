@@ -67,20 +67,18 @@ def test_a_reward_counts_once_per_state():
     assert [rewards_of(agent, letter) for letter in "AB"] == [1, 1]
 
 
-def test_a_reward_counts_for_all_states_of_the_episode():
-    agent = new_agent(queue_length=2)
+@pytest.mark.parametrize(
+    "counted, expected", [("queue", [0, 0, 1, 1]), ("episode", [1, 1, 1, 1])]
+)
+def test_a_reward_counts_in_the_queue_or_in_the_whole_episode(counted, expected):
+    agent = new_agent(queue_length=2, fixed_mode={"counted": counted})
     rewarded_walk(agent, "ABCD", "0000")
-    assert [rewards_of(agent, letter) for letter in "ABCD"] == [1, 1, 1, 1]
+    assert [rewards_of(agent, letter) for letter in "ABCD"] == expected
 
 
-def test_a_reward_may_count_in_the_queue_only():
-    agent = new_agent(queue_length=2, fixed_mode={**STRATEGY_1, "counted": "queue"})
-    rewarded_walk(agent, "ABCD", "0000")
-    assert [rewards_of(agent, letter) for letter in "ABCD"] == [0, 0, 1, 1]
-
-
-def test_a_reward_does_not_count_for_states_of_other_episodes():
-    agent = new_agent()
+@pytest.mark.parametrize("counted", ("queue", "episode"))
+def test_a_reward_does_not_count_for_states_of_other_episodes(counted):
+    agent = new_agent(fixed_mode={"counted": counted})
     rewarded_walk(agent, "A", "0")
     rewarded_walk(agent, "B", "0")
     assert rewards_of(agent, "A") == 1

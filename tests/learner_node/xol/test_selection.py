@@ -168,10 +168,11 @@ def test_the_smallest_penalty_summed_over_types_ranks_first():
     )
 
 
-def test_equal_penalties_rank_in_the_order_of_the_alternatives():
-    np.testing.assert_allclose(
-        ranked_shares([1, 1, 1], p=[4, 4, 4], parts=6), np.array([3, 2, 1]) / 6
-    )
+@pytest.mark.parametrize("n", (3, 40))
+def test_equal_penalties_rank_in_the_order_of_the_alternatives(n):
+    ranks = n * (n + 1) // 2
+    shares = ranked_shares([1] * n, p=[4] * n, parts=ranks)
+    np.testing.assert_allclose(shares, np.arange(n, 0, -1) / ranks)
 
 
 def test_ranking_is_among_those_that_avoid_the_gravest_penalties():
