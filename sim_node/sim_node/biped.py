@@ -28,7 +28,7 @@ from msgs_json.timing import (
     LEARNING_PERIOD_S,
     microseconds,
 )
-from sim_node.contact import FloorContact, floor_contact
+from sim_node.contact import NO_CONTACT, FloorContact, floor_contact
 from sim_node.control_tick import ControlTick, sum_up
 from sim_node.disturbance import Disturbance, draw_disturbance
 from sim_node.errors import SnapshotError
@@ -60,8 +60,9 @@ class _Watch:
     """What the robot remembers from tick to tick besides the physics."""
 
     episode: int = 0
+    clock_ticks: int = 0
     control_tick: int = 0
-    zmp: tuple[float, float] = (0.0, 0.0)
+    contact: FloorContact = NO_CONTACT
     waist_velocity: tuple[float, float] = (0.0, 0.0)
     unloaded_ticks: int = 0
     saturated_ticks: int = 0
@@ -105,7 +106,14 @@ class SimulatedBiped:
         self._unloaded_limit = _ticks(limits.unloaded_feet_s)
         self._saturation_limit = _ticks(limits.torque_saturation_s)
         self._torque_marks = [_SATURATED * limit for limit in self.world.torque_limits]
-        self._q_reference = np.empty((0, len(JOINT_NAMES)))
+        self._segment = start
+        self._solved_rows = 1
+        self._unsolved_cause: EndCause | None = None
+        self._q_reference: list[list[float]] = []
+        self._dq_reference: list[list[float]] = []
+        self._zmp_reference: list[list[float]] = []
+        # Measured since the last observation.
+        self._ticks: list[ControlTick] = []
         self._disturbance = draw_disturbance(
             replace(settings.disturbances, push_force_n=0.0, mass_error=0.0),
             self.world.n_links,
@@ -118,7 +126,10 @@ class SimulatedBiped:
     # -- a walk --------------------------------------------------------------------
 
     def begin_walk(self, episode: int) -> Observation:
-        """Put the robot back on its feet and return what it observes there."""
+        """Put the robot back on its feet and return what it observes there.
+
+        The clock goes on by one tick, so that no two observations share a time.
+        """
         self.world.check_open()
         self.world.load(self._standing)
         disturbances = self.settings.disturbances
@@ -131,10 +142,13 @@ class SimulatedBiped:
         _, velocity = self.world.waist()
         self._watch = _Watch(
             episode=episode,
-            zmp=(contact.zmp_x_m, contact.zmp_y_m),
+            clock_ticks=self._watch.clock_ticks + 1,
+            contact=contact,
             waist_velocity=(float(velocity[0]), float(velocity[1])),
         )
-        return self._observe(self._start, 0, [], contact)
+        self._segment = self._start
+        self._solved_rows = 1
+        return self.observe()
 
     def execute(self, segment: WaistSegment) -> Observation:
         """Follow a segment to its end, or to the tick where the walk fails.
@@ -142,38 +156,147 @@ class SimulatedBiped:
         Raises:
             ValueError: the segment does not continue the walk, or the walk is over.
         """
-        watch = self._watch
-        if watch.end_cause is not None:
-            raise ValueError(f"the walk is over: {watch.end_cause}")
-        if segment.first_tick != watch.control_tick:
+        self._check_walking()
+        if segment.first_tick != self._watch.control_tick:
             raise ValueError(
                 f"segment starts at tick {segment.first_tick}, "
+                f"the robot is at tick {self._watch.control_tick}"
+            )
+        self.follow(segment, rows=segment.n_ticks + 1)
+        end = segment.first_tick + segment.n_ticks
+        while self._watch.control_tick < end and self._watch.end_cause is None:
+            self.advance()
+        return self.observe()
+
+    def follow(self, segment: WaistSegment, rows: int | None = None) -> None:
+        """Take over the references of a segment, from the present tick on.
+
+        A segment that the legs cannot follow within its own ticks ends the walk here,
+        before it is begun; look-ahead is followed as far as they can.
+
+        Args:
+            segment: begins at or before the present control tick.
+            rows: how many of its rows to use; all by default.
+
+        Raises:
+            ValueError: the segment is not about the present tick, has a number that is
+                not finite, or the walk is over.
+        """
+        self._check_walking()
+        watch = self._watch
+        rows = len(segment.waist) if rows is None else rows
+        if not 0 <= watch.control_tick - segment.first_tick < rows - 1:
+            raise ValueError(
+                f"segment of ticks {segment.first_tick} to "
+                f"{segment.first_tick + rows - 1}, "
                 f"the robot is at tick {watch.control_tick}"
             )
-        rows = segment.n_ticks + 1
-        self._q_reference = np.empty((rows, len(JOINT_NAMES)))
-        status, tick, _ = kinematics.solve_legs(
+        q_reference = np.empty((rows, len(JOINT_NAMES)))
+        status, row, _ = kinematics.solve_legs(
             segment.waist[:rows],
             segment.left_foot[:rows],
             segment.right_foot[:rows],
-            self._q_reference,
+            q_reference,
         )
-        if status != kinematics.SOLVED:
-            if status not in _IK_END_CAUSE:
-                raise ValueError(f"segment has a number that is not finite, row {tick}")
-            watch.end_cause = _IK_END_CAUSE[status]
-            return self._observe(segment, 0, [], None)
-        positions = self._q_reference.tolist()
-        velocities = (np.diff(self._q_reference, axis=0) / CONTROL_PERIOD_S).tolist()
-        references = segment.zmp_reference[:rows].tolist()
-        ticks: list[ControlTick] = []
-        for i in range(segment.n_ticks):
-            self._push()
-            self.world.step(positions[i], velocities[i])
-            ticks.append(self._read(positions[i + 1], references[i + 1]))
-            if watch.end_cause is not None:
-                break
-        return self._observe(segment, len(ticks), ticks, ticks[-1].contact)
+        if status == kinematics.NOT_FINITE:
+            raise ValueError(f"segment has a number that is not finite, row {row}")
+        self._solved_rows = rows if status == kinematics.SOLVED else row
+        self._unsolved_cause = _IK_END_CAUSE.get(status)
+        if self._solved_rows <= segment.n_ticks:
+            watch.end_cause = self._unsolved_cause
+            return
+        self._segment = segment
+        self._q_reference = q_reference.tolist()
+        self._dq_reference = (np.diff(q_reference, axis=0) / CONTROL_PERIOD_S).tolist()
+        self._zmp_reference = segment.zmp_reference[:rows].tolist()
+
+    def advance(self) -> ControlTick:
+        """Walk one control tick along the references.
+
+        Raises:
+            ValueError: the walk is over, or the references are used up.
+        """
+        self._check_walking()
+        watch = self._watch
+        row = watch.control_tick - self._segment.first_tick
+        if self.ticks_ahead < 1:
+            raise ValueError(f"no reference for tick {watch.control_tick + 1}")
+        self._push()
+        dq_reference = self._dq_reference[row]
+        self.world.step(self._q_reference[row], dq_reference)
+        tick = self._read(
+            self._q_reference[row + 1], dq_reference, self._zmp_reference[row + 1]
+        )
+        self._ticks.append(tick)
+        if self.on_tick is not None:
+            self.on_tick(tick)
+        return tick
+
+    def observe(self) -> Observation:
+        """Sum up the control ticks since the last observation, as seen from the last.
+
+        Numbers that the physics left undefined are reported as zero, with the end
+        cause `physics_nan`.
+        """
+        watch, segment = self._watch, self._segment
+        row = self._planned_row()
+        waist, velocity = self.world.waist()
+        right_support = bool(segment.right_support[row])
+        support_foot = (segment.right_foot if right_support else segment.left_foot)[row]
+        zmp_error = np.subtract(watch.contact[:2], segment.zmp_reference[row])
+        acceleration = (
+            np.subtract(velocity[:2], watch.waist_velocity) / LEARNING_PERIOD_S
+        )
+        watch.waist_velocity = (float(velocity[0]), float(velocity[1]))
+        waist_in_support_foot = waist[:2] - support_foot[:2]
+        noise = self.settings.disturbances
+        if noise.position_noise_m > 0.0:
+            waist_in_support_foot += noise.position_noise_m * self._rng.standard_normal(2)  # fmt: skip  # noqa: E501
+        if noise.zmp_noise_m > 0.0:
+            zmp_error += noise.zmp_noise_m * self._rng.standard_normal(2)
+        if noise.acceleration_noise_m_s2 > 0.0:
+            acceleration += noise.acceleration_noise_m_s2 * self._rng.standard_normal(2)
+        sums = sum_up(self._ticks, watch.trajectory)
+        self._ticks.clear()
+        left_n, right_n = watch.contact.left_load_n, watch.contact.right_load_n
+        return Observation(
+            episode=watch.episode,
+            clock_ticks=watch.clock_ticks,
+            control_tick=watch.control_tick,
+            phase=PhaseFlags(
+                planned_right_support=right_support,
+                planned_double_support=bool(segment.double_support[row]),
+                measured_right_support=right_n > left_n,
+                measured_double_support=left_n > 0.0 and right_n > 0.0,
+                step_index=int(segment.step_index[row]),
+            ),
+            waist_in_support_foot_m=_pair(waist_in_support_foot),
+            zmp_error_m=_pair(zmp_error),
+            waist_acceleration_m_s2=_pair(acceleration),
+            **sums._asdict(),
+            trajectory_sha256=self.trajectory_sha256,
+            end_cause=watch.end_cause,
+        )
+
+    def end(self, cause: EndCause) -> None:
+        """End the walk from outside."""
+        self._watch.end_cause = cause
+
+    @property
+    def ticks_ahead(self) -> int:
+        """Control ticks for which there are references."""
+        row = self._watch.control_tick - self._segment.first_tick
+        return self._solved_rows - 1 - row
+
+    @property
+    def end_cause(self) -> EndCause | None:
+        """Why the walk has ended, if it has."""
+        return self._watch.end_cause
+
+    @property
+    def clock_ticks(self) -> int:
+        """Control ticks of the simulation's clock, over all walks."""
+        return self._watch.clock_ticks
 
     @property
     def control_tick(self) -> int:
@@ -220,11 +343,14 @@ class SimulatedBiped:
 
     # -- inner steps ---------------------------------------------------------------
 
+    def _check_walking(self) -> None:
+        if self._watch.end_cause is not None:
+            raise ValueError(f"the walk is over: {self._watch.end_cause}")
+
     def _settle(self) -> None:
         pose = (self._start.waist[:1], self._start.left_foot[:1], self._start.right_foot[:1])  # fmt: skip  # noqa: E501
         q = kinematics.leg_joint_positions(*pose)[0]
         self.world.place(pose[0][0], q)
-        self._q_reference = np.array([q])
         still = [0.0] * len(q)
         for _ in range(_SETTLING_TICKS):
             self.world.step(q.tolist(), still)
@@ -235,14 +361,20 @@ class SimulatedBiped:
             self.world.push(push.push_force_n)
 
     def _read(
-        self, joint_reference: list[float], zmp_reference: list[float]
+        self,
+        joint_reference: list[float],
+        joint_velocity_reference: list[float],
+        zmp_reference: list[float],
     ) -> ControlTick:
         """Read the sensors after a control tick and watch the limits."""
         watch = self._watch
+        watch.clock_ticks += 1
         watch.control_tick += 1
         position, velocity, torque = self.world.joint_states()
-        contact = floor_contact(self.world.contacts(), self.world.left_sole, watch.zmp)
-        watch.zmp = (contact.zmp_x_m, contact.zmp_y_m)
+        contact = floor_contact(
+            self.world.contacts(), self.world.left_sole, watch.contact[:2]
+        )
+        watch.contact = contact
         zmp_error = math.hypot(
             contact.zmp_x_m - zmp_reference[0], contact.zmp_y_m - zmp_reference[1]
         )
@@ -265,65 +397,21 @@ class SimulatedBiped:
             watch.end_cause = EndCause.TORQUE_SATURATION
         elif watch.unloaded_ticks >= self._unloaded_limit:
             watch.end_cause = EndCause.FEET_UNLOADED
-        tick = ControlTick(
+        return ControlTick(
+            watch.clock_ticks,
             watch.control_tick,
             joint_reference,
+            joint_velocity_reference,
             position,
             velocity,
             torque,
             contact,
+            zmp_reference,
             zmp_error,
         )
-        if self.on_tick is not None:
-            self.on_tick(tick)
-        return tick
 
-    def _observe(
-        self,
-        segment: WaistSegment,
-        row: int,
-        ticks: list[ControlTick],
-        contact: FloorContact | None,
-    ) -> Observation:
-        """Sum up a learning tick, seen from its last control tick (row of segment)."""
-        watch = self._watch
-        waist, velocity = self.world.waist()
-        right_support = bool(segment.right_support[row])
-        support_foot = (segment.right_foot if right_support else segment.left_foot)[row]
-        zmp_error = np.subtract(watch.zmp, segment.zmp_reference[row])
-        acceleration = (
-            np.subtract(velocity[:2], watch.waist_velocity) / LEARNING_PERIOD_S
-        )
-        watch.waist_velocity = (float(velocity[0]), float(velocity[1]))
-        waist_in_support_foot = waist[:2] - support_foot[:2]
-        noise = self.settings.disturbances
-        if noise.position_noise_m > 0.0:
-            waist_in_support_foot += noise.position_noise_m * self._rng.standard_normal(2)  # fmt: skip  # noqa: E501
-        if noise.zmp_noise_m > 0.0:
-            zmp_error += noise.zmp_noise_m * self._rng.standard_normal(2)
-        if noise.acceleration_noise_m_s2 > 0.0:
-            acceleration += noise.acceleration_noise_m_s2 * self._rng.standard_normal(2)
-        sums = sum_up(ticks, self._q_reference, watch.trajectory)
-        left = contact is not None and contact.left_load_n > 0.0
-        right = contact is not None and contact.right_load_n > 0.0
-        return Observation(
-            episode=watch.episode,
-            control_tick=watch.control_tick,
-            phase=PhaseFlags(
-                planned_right_support=right_support,
-                planned_double_support=bool(segment.double_support[row]),
-                measured_right_support=right
-                and contact is not None
-                and contact.right_load_n > contact.left_load_n,
-                measured_double_support=left and right,
-                step_index=int(segment.step_index[row]),
-            ),
-            waist_in_support_foot_m=_pair(waist_in_support_foot),
-            zmp_error_m=_pair(zmp_error),
-            waist_acceleration_m_s2=_pair(acceleration),
-            **sums._asdict(),
-            end_cause=watch.end_cause,
-        )
+    def _planned_row(self) -> int:
+        return self._watch.control_tick - self._segment.first_tick
 
 
 def _ticks(duration_s: float) -> int:
@@ -331,4 +419,6 @@ def _ticks(duration_s: float) -> int:
 
 
 def _pair(values: NDArray[np.float64]) -> tuple[float, float]:
-    return float(values[0]), float(values[1])
+    """Return two plain numbers; zeros where the physics gave none."""
+    x, y = float(values[0]), float(values[1])
+    return (x, y) if math.isfinite(x + y) else (0.0, 0.0)

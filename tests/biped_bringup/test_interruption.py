@@ -8,12 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.biped_bringup.conftest import Outcome
+from tests.biped_bringup.runs import Record, quick, record
 
 from biped_bringup.cli.learn import INTERRUPTED
 from biped_bringup.training import TrainingRun
 from msgs_json.episode_result import EpisodeResult
-from tests.biped_bringup.conftest import Outcome
-from tests.biped_bringup.runs import Record, quick, record
 
 PATIENCE_S = 300.0
 LEARN = ("learn", "--json", "--preset", "quick", "--out", "out")

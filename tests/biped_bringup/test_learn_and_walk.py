@@ -6,9 +6,9 @@ import struct
 from pathlib import Path
 
 import pytest
+from tests.biped_bringup.runs import SHORT
 
 from biped_bringup.training import TrainingRun
-from tests.biped_bringup.runs import SHORT
 
 SHORT_LEARN = ("learn", "--json", "--preset", "quick", "--out", "out") + tuple(
     word for change in SHORT for word in ("--set", change)

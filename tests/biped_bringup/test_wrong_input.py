@@ -76,8 +76,9 @@ STUMBLING_BLOCKS = {
 @pytest.fixture(scope="module")
 def memory(tmp_path_factory) -> bytes:
     """A memory of nothing yet."""
-    from biped_bringup.training import TrainingRun
     from tests.biped_bringup.runs import SHORT, quick
+
+    from biped_bringup.training import TrainingRun
 
     file = tmp_path_factory.mktemp("memory") / "memory.npz"
     run = TrainingRun(quick(*SHORT), seed=0)

@@ -101,7 +101,7 @@ def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
             responder = greedy_walk(settings.learner, walker.walk_ticks, agent)
         else:
             responder = static_walk(settings.learner, walker.walk_ticks)
-        result = walker.walk(responder, episode=1)
+        result = walker.walk(responder)
         if options.figure is not None:
             draw_zmp(trace, walker.reference.plan, settings.sim.limits, options.figure)
         return result, walker.biped.trajectory_sha256
