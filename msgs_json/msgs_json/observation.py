@@ -47,6 +47,8 @@ class Observation(
     integrals run over all of its control ticks.
     """
 
+    simulation: str
+    """Name of the simulation's run; a clock belongs to it."""
     episode: Count
     """Number of the walk, from 1, as the simulation counts."""
     clock_ticks: Count

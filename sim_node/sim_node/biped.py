@@ -84,6 +84,7 @@ class SimulatedBiped:
         start: WaistSegment,
         rng: np.random.Generator,
         on_tick: Callable[[ControlTick], None] | None = None,
+        name: str = "in-process",
     ) -> None:
         """Build the world and let the robot settle in its starting pose.
 
@@ -92,7 +93,9 @@ class SimulatedBiped:
             start: a segment whose row 0 is the pose in which walks start.
             rng: source of all disturbances.
             on_tick: called after every control tick.
+            name: of this simulation's run, for observations.
         """
+        self._name = name
         self.settings = settings
         self.on_tick = on_tick
         self._rng = rng
@@ -260,6 +263,7 @@ class SimulatedBiped:
         self._ticks.clear()
         left_n, right_n = watch.contact.left_load_n, watch.contact.right_load_n
         return Observation(
+            simulation=self._name,
             episode=watch.episode,
             clock_ticks=watch.clock_ticks,
             control_tick=watch.control_tick,
@@ -279,8 +283,9 @@ class SimulatedBiped:
         )
 
     def end(self, cause: EndCause) -> None:
-        """End the walk from outside."""
+        """End the walk from outside; the clock goes on by one tick."""
         self._watch.end_cause = cause
+        self._watch.clock_ticks += 1
 
     @property
     def ticks_ahead(self) -> int:

@@ -10,8 +10,10 @@ from tests.biped_bringup.runs import SHORT
 
 from biped_bringup.training import TrainingRun
 
-SHORT_LEARN = ("learn", "--json", "--preset", "quick", "--out", "out") + tuple(
-    word for change in SHORT for word in ("--set", change)
+SHORT_CHANGES = [word for change in SHORT for word in ("--set", change)]
+SHORT_LEARN = (
+    *("learn", "--json", "--preset", "quick", "--out", "out"),
+    *SHORT_CHANGES,
 )
 SHORT_STATIC = ("walk", "--json", "--static", "--set", "gait.steps=1")
 STATIC = ("walk", "--json", "--static")

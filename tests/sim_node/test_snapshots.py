@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from msgs_json.end_cause import EndCause
-from sim_node.errors import SimulationError, SnapshotError
+from sim_node.errors import SnapshotError
 
 STURDY = {"zmp_error_m": 1.0}
 DISTURBED = {
@@ -154,7 +154,3 @@ def test_a_snapshot_that_this_world_never_kept_is_refused(new_walker, shaky_walk
     snapshot = one.robot.snapshot()
     with pytest.raises(SnapshotError):
         other.robot.restore(snapshot)
-
-
-def test_a_snapshot_error_is_a_simulation_error():
-    assert issubclass(SnapshotError, SimulationError)

@@ -52,6 +52,26 @@ class WaistReference:
         """Control ticks of the whole walk."""
         return self.plan.ticks
 
+    @property
+    def tick(self) -> int:
+        """Control tick at which the next segment starts."""
+        return self._tick
+
+    def stance(self) -> WaistSegment:
+        """Return the pose in which walks start, as a segment of one row."""
+        plan = self.plan
+        return WaistSegment(
+            first_tick=0,
+            n_ticks=0,
+            waist=self.static_waist[:1],
+            left_foot=plan.left_foot[:1],
+            right_foot=plan.right_foot[:1],
+            zmp_reference=plan.zmp_reference[:1],
+            right_support=plan.right_support[:1],
+            double_support=plan.double_support[:1],
+            step_index=plan.step_index[:1],
+        )
+
     def reset(self) -> None:
         """Go back to the start of the walk, without any correction."""
         self._tick = 0

@@ -55,6 +55,7 @@ class XolAgent:
         )
         self.queue = DecisionQueue(settings.queue_length, self.rules.space.table_shape)
         self.episode = 0
+        self.failures_in_a_row = 0
         self.state = NO_STATE
         self._chosen = np.zeros(self.rules.space.table_shape[0], dtype=np.int64)
 
@@ -115,6 +116,7 @@ class XolAgent:
             value: rwd.
             counts: the reward raises TUC, once per state.
         """
+        self.failures_in_a_row = 0
         rules = self.rules
         queue = self.queue
         newest_first = (queue.head - 1 - np.arange(queue.filled)) % queue.length
@@ -144,6 +146,7 @@ class XolAgent:
                 f"penalty = {penalty}: must be between 0 and "
                 f"{len(self.penalty_values) - 2}"
             )
+        self.failures_in_a_row += 1
         self._pay_penalty(
             penalty, 0, self.settings.penalty_reach, self.settings.failure_reach
         )
@@ -217,6 +220,7 @@ class XolAgent:
             "state_centers": self.states.centers,
             "state_life": self.states.life[:count],
             "episode": np.array(self.episode, dtype=np.int64),
+            "failures_in_a_row": np.array(self.failures_in_a_row, dtype=np.int64),
         }
         for name in RuleTable.ARRAYS:
             arrays[name] = getattr(self.rules, name)[:count]
@@ -233,7 +237,7 @@ class XolAgent:
         for name, own in current.items():
             if name not in memory:
                 raise ValueError(f"memory: array {name} is missing")
-            expected = own.shape if name == "episode" else (count, *own.shape[1:])
+            expected = (count, *own.shape[1:]) if own.shape else ()
             given = memory[name]
             if given.shape != expected or given.dtype != own.dtype:
                 raise ValueError(
@@ -248,6 +252,7 @@ class XolAgent:
             getattr(self.rules, name)[:count] = memory[name]
         self.rules.clear_from(count)
         self.episode = int(memory["episode"])
+        self.failures_in_a_row = int(memory["failures_in_a_row"])
         self.queue.clear()
         self.state = NO_STATE
 
@@ -337,10 +342,21 @@ class XolAgent:
                     new.add(origin)
 
     def _release_fixed_states(self) -> None:
-        """Return up to three fixed states ahead of the penalty to normal mode."""
+        """Return up to three fixed states ahead of the penalty to normal mode.
+
+        Where the fixed states themselves lead to the failure, the last decisions may
+        be in normal states every time, and nothing would ever be released: when
+        patience ends, the nearest fixed states are. If that does not help, the next
+        ones behind them follow, since those released stay normal until rewarded.
+        """
         mode = self.settings.fixed_mode
         rules = self.rules
-        reach = self.queue.filled if mode.release == "nearest" else mode.released_states
+        impatient = (
+            mode.patience_episodes > 0
+            and self.failures_in_a_row % mode.patience_episodes == 0
+        )
+        nearest = mode.release == "nearest" or impatient
+        reach = self.queue.filled if nearest else mode.released_states
         nearest_first = self._states_of_ages(reach)
         fixed = [k for k in nearest_first if rules.fixed[k]][: mode.released_states]
         rules.fixed[fixed] = False

@@ -60,6 +60,13 @@ class FixedModeSettings:
     released_states: int = setting(
         3, "states", "how many fixed states ahead of a penalty are released", lower=0
     )
+    patience_episodes: int = setting(
+        10,
+        "failures",
+        "after this many failures in a row, and again after as many more, the nearest "
+        "fixed states in the queue are released; 0: never",
+        lower=0,
+    )
     release: str = setting(
         "last_decisions",
         "",

@@ -12,14 +12,24 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import MultiDOFJointTrajectory, MultiDOFJointTrajectoryPoint
 
+from msgs_json.refusal import RefusedMessageError
 from msgs_json.ros.cdr import MessageTemplate
 from msgs_json.segment import WaistSegment
 from msgs_json.timing import CONTROL_PERIOD_US
 
 WORLD_FRAME = "world"
 # One transform each per control tick; only translations are used. `phase` holds flags:
-# x 1 = right support leg, y 1 = double support, z = single supports begun.
-SEGMENT_PARTS = ("waist", "left_foot", "right_foot", "zmp_reference", "phase")
+# x 1 = right support leg, y 1 = double support, z = single supports begun. `extent`
+# is the same in all rows: x = first control tick of the walk, y = ticks to be walked
+# before the next observation; rows beyond them are look-ahead.
+SEGMENT_PARTS = (
+    "waist",
+    "left_foot",
+    "right_foot",
+    "zmp_reference",
+    "phase",
+    "extent",
+)
 _AXES = 3
 
 
@@ -101,14 +111,26 @@ def segment_values(segment: WaistSegment) -> NDArray[np.float64]:
     values[:, 4, 0] = segment.right_support
     values[:, 4, 1] = segment.double_support
     values[:, 4, 2] = segment.step_index
+    values[:, 5, 0] = segment.first_tick
+    values[:, 5, 1] = segment.n_ticks
     return values
 
 
-def segment_of(
-    values: NDArray[np.float64], first_tick: int, n_ticks: int
-) -> WaistSegment:
-    """Return the segment of a message's numbers, the inverse of `segment_values`."""
+def segment_of(values: NDArray[np.float64]) -> WaistSegment:
+    """Return the segment of a message's numbers, the inverse of `segment_values`.
+
+    Raises:
+        RefusedMessageError: a number is not finite, or the extent makes no sense.
+    """
+    if not np.isfinite(values).all():
+        raise RefusedMessageError("segment with a number that is not finite")
     cells = values.reshape(-1, len(SEGMENT_PARTS), _AXES)
+    first_tick, n_ticks = (int(n) for n in cells[0, 5, :2])
+    if first_tick < 0 or not 0 <= n_ticks < len(cells) + (n_ticks == 0):
+        raise RefusedMessageError(
+            f"segment of {len(cells)} rows from tick {first_tick}: "
+            f"{n_ticks} ticks cannot be walked on it"
+        )
     return WaistSegment(
         first_tick=first_tick,
         n_ticks=n_ticks,

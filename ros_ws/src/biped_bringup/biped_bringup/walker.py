@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_bringup.run_settings import RunSettings
-from learner_node.walking.actions import NO_CORRECTION_M
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.biped import SimulatedBiped
@@ -41,8 +40,9 @@ class Walker:
             on_tick: called after every control tick.
         """
         self.reference = WaistReference(settings.gait, settings.correction)
-        standing = self.reference.segment(NO_CORRECTION_M)
-        self.biped = SimulatedBiped(settings.sim, standing, rng, on_tick)
+        self.biped = SimulatedBiped(
+            settings.sim, self.reference.stance(), rng, on_tick
+        )
         self._walks = 0
 
     @property

@@ -1,0 +1,203 @@
+"""A file that is no memory of this program is refused whole, and left alone."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pybullet
+import pytest
+from tests.biped_bringup.runs import SHORT, quick
+
+from biped_bringup.training import TrainingRun
+from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
+
+Change = Callable[[dict[str, Any], dict[str, np.ndarray]], Any]
+
+# A change of header and arrays that leaves a sound checkpoint, but of something else.
+MISFITS: dict[str, tuple[Change, str]] = {
+    "other alternatives": (
+        lambda header, _: header["settings"]["learner"]["action"].update(
+            alternatives=9
+        ),
+        r"array q is float64\(\d+, 2, 15\), this problem needs float64\(\d+, 2, 9\)",
+    ),
+    "a setting that there is not": (
+        lambda header, _: header["settings"]["gait"].update(shoes=2),
+        r"gait\.shoes = 2: unknown key",
+    ),
+    "a gait that cannot be walked": (
+        lambda header, _: header["settings"]["gait"].update(step_length_m=0.45),
+        r"cannot walk this gait",
+    ),
+    "no settings": (lambda header, _: header.pop("settings"), "settings"),
+    "settings that are none": (
+        lambda header, _: header.update(settings=[]),
+        "does not fit this program",
+    ),
+    "no seed": (lambda header, _: header.pop("seed"), "seed"),
+    "no progress": (lambda header, _: header.pop("progress"), "progress"),
+    "no tally": (lambda header, _: header.pop("tally"), "tally"),
+    "a tally of something else": (
+        lambda header, _: header["tally"].update(falls=3),
+        "falls",
+    ),
+    "a subtask beyond the schedule": (
+        lambda header, _: header["progress"].update(subtask=99),
+        "subtask 99",
+    ),
+    "a subtask before the schedule": (
+        lambda header, _: header["progress"].update(subtask=-1),
+        "subtask -1",
+    ),
+    "random numbers of another kind": (
+        lambda header, _: header["progress"]["rng"].update(bit_generator="MT19937"),
+        "PCG64",
+    ),
+    "no random numbers of the robot": (
+        lambda header, _: header.update(robot_rng=None),
+        "state must be a dict",
+    ),
+    "no values": (lambda _, arrays: arrays.pop("memory/q"), "array q is missing"),
+    "no states": (
+        lambda _, arrays: arrays.pop("memory/state_life"),
+        r"memory: array",
+    ),
+    "no log": (lambda _, arrays: arrays.pop("log/reward"), "columns"),
+    "values of another type": (
+        lambda _, arrays: arrays.update(
+            {"memory/q": arrays["memory/q"].astype(np.float32)}
+        ),
+        "array q is float32",
+    ),
+    "fewer values than states": (
+        lambda _, arrays: arrays.update({"memory/q": arrays["memory/q"][1:]}),
+        "array q is",
+    ),
+    "a log of another length": (
+        lambda _, arrays: arrays.update({"log/reward": np.zeros(9)}),
+        "different length",
+    ),
+    "an array of nobody": (
+        lambda _, arrays: arrays.update({"mood": np.zeros(3)}),
+        "mood",
+    ),
+    "another version": (lambda header, _: header.update(version=2), "version 2"),
+    "another format": (lambda header, _: header.update(format="cart"), "is cart"),
+}
+
+
+@pytest.fixture(scope="module")
+def memory(tmp_path_factory) -> bytes:
+    """One episode's memory."""
+    file = tmp_path_factory.mktemp("memory") / "memory.npz"
+    run = TrainingRun(quick(*SHORT), seed=0)
+    run.episode()
+    run.save(file)
+    run.close()
+    return file.read_bytes()
+
+
+@pytest.fixture
+def misfit(tmp_path: Path, memory: bytes) -> Callable[[Change], Path]:
+    """Write a memory with a change in it, its hash made to fit."""
+
+    def write(change: Change) -> Path:
+        file = tmp_path / "memory.npz"
+        file.write_bytes(memory)
+        header, arrays = read_checkpoint(file)
+        header.pop("arrays_sha256")
+        change(header, arrays)
+        write_checkpoint(file, header, arrays)
+        return file
+
+    return write
+
+
+def foreign_files(memory: bytes) -> dict[str, bytes]:
+    third = len(memory) // 3
+    damaged = bytearray(memory)
+    damaged[third] ^= 0x10
+    return {
+        "nothing": b"",
+        "text": b"episodes: 3\n",
+        "its first third": memory[:third],
+        "all but its last byte": memory[:-1],
+        "a flipped bit": bytes(damaged),
+        "zeros": bytes(1000),
+    }
+
+
+def test_an_unchanged_memory_is_taken(misfit):
+    run = TrainingRun.load(misfit(lambda header, arrays: None))
+    run.close()
+    assert run.episodes == 1
+
+
+@pytest.mark.parametrize("what", MISFITS)
+def test_a_memory_does_not_fit_with(misfit, what):
+    change, reason = MISFITS[what]
+    file = misfit(change)
+    with pytest.raises(CheckpointError, match=reason) as caught:
+        TrainingRun.load(file)
+    assert str(caught.value).startswith(f"{file}: ")
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("verb", ["learn --resume", "walk --memory"])
+@pytest.mark.parametrize("what", foreign_files(bytes(9)))
+def test_a_file_is_refused_that_holds(biped, tmp_path, memory, what, verb):
+    content = foreign_files(memory)[what]
+    (tmp_path / "memory.npz").write_bytes(content)
+    outcome = biped(*verb.split(), "memory.npz")
+    assert (outcome.status, outcome.out) == (2, "")
+    assert len(outcome.err.splitlines()) == 1
+    assert "memory.npz: not a biped checkpoint" in outcome.err
+
+
+@pytest.mark.parametrize("what", foreign_files(bytes(9)))
+def test_a_refused_file_is_left_alone(biped, tmp_path, memory, what):
+    content = foreign_files(memory)[what]
+    (tmp_path / "memory.npz").write_bytes(content)
+    biped("learn", "--resume", "memory.npz", "--episodes", 2)
+    assert (tmp_path / "memory.npz").read_bytes() == content
+    assert [file.name for file in tmp_path.iterdir()] == ["memory.npz"]
+
+
+def test_a_misfit_is_left_alone(biped, tmp_path, misfit):
+    content = misfit(MISFITS["other alternatives"][0]).read_bytes()
+    assert biped("learn", "--resume", "memory.npz").status == 2
+    assert (tmp_path / "memory.npz").read_bytes() == content
+
+
+def test_flipped_bits_all_over_the_file_are_noticed(tmp_path, memory):
+    file = tmp_path / "memory.npz"
+    file.write_bytes(memory)
+    header, arrays = read_checkpoint(file)
+    taken = []
+    for position in range(0, len(memory), len(memory) // 97):
+        damaged = bytearray(memory)
+        damaged[position] ^= 0x01
+        file.write_bytes(damaged)
+        try:
+            found_header, found = read_checkpoint(file)
+        except CheckpointError:
+            continue
+        same = found_header == header and all(
+            np.array_equal(found[name], arrays[name], equal_nan=True) for name in arrays
+        )
+        taken += [] if same else [position]
+    assert taken == []
+
+
+def open_worlds() -> int:
+    """Count Bullet's open worlds."""
+    return sum(pybullet.isConnected(client) for client in range(1024))
+
+
+def test_a_refused_memory_leaves_no_world_behind(misfit):
+    file = misfit(MISFITS["other alternatives"][0])
+    before = open_worlds()
+    with pytest.raises(CheckpointError):
+        TrainingRun.load(file)
+    assert open_worlds() == before
