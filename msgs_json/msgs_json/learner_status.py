@@ -17,6 +17,8 @@ class LearnerStatus(
 ):
     """State of the schedule and of the memory between two episodes."""
 
+    instance: str
+    """Name of the running learner; there must be one on a graph."""
     seed: Count
     target_time_s: float
     subtask: Count

@@ -61,6 +61,13 @@ WAIST_REFERENCE = Topic(
     depth=100,
     meaning="waist, feet, ZMP reference [m, world] and phase per control tick",
 )
+STANCE = Topic(
+    "/biped/stance",
+    "trajectory_msgs/msg/MultiDOFJointTrajectory",
+    depth=1,
+    latched=True,
+    meaning="the pose in which walks start, a waist reference of one control tick",
+)
 EPISODE = Topic(
     "/biped/episode", "std_msgs/msg/String", depth=100, meaning="EpisodeResult, JSON"
 )
@@ -101,6 +108,7 @@ TOPICS = (
     OBSERVATION,
     CORRECTION,
     WAIST_REFERENCE,
+    STANCE,
     EPISODE,
     LEARNER_STATUS,
     ROBOT_DESCRIPTION,

@@ -261,19 +261,12 @@ class SimulatedBiped:
             acceleration += noise.acceleration_noise_m_s2 * self._rng.standard_normal(2)
         sums = sum_up(self._ticks, watch.trajectory)
         self._ticks.clear()
-        left_n, right_n = watch.contact.left_load_n, watch.contact.right_load_n
         return Observation(
             simulation=self._name,
             episode=watch.episode,
             clock_ticks=watch.clock_ticks,
             control_tick=watch.control_tick,
-            phase=PhaseFlags(
-                planned_right_support=right_support,
-                planned_double_support=bool(segment.double_support[row]),
-                measured_right_support=right_n > left_n,
-                measured_double_support=left_n > 0.0 and right_n > 0.0,
-                step_index=int(segment.step_index[row]),
-            ),
+            phase=self._phase(),
             waist_in_support_foot_m=_pair(waist_in_support_foot),
             zmp_error_m=_pair(zmp_error),
             waist_acceleration_m_s2=_pair(acceleration),
@@ -413,10 +406,22 @@ class SimulatedBiped:
             contact,
             zmp_reference,
             zmp_error,
+            self._phase(),
         )
 
     def _planned_row(self) -> int:
         return self._watch.control_tick - self._segment.first_tick
+
+    def _phase(self) -> PhaseFlags:
+        row, contact = self._planned_row(), self._watch.contact
+        return PhaseFlags(
+            planned_right_support=bool(self._segment.right_support[row]),
+            planned_double_support=bool(self._segment.double_support[row]),
+            measured_right_support=contact.right_load_n > contact.left_load_n,
+            measured_double_support=contact.left_load_n > 0.0
+            and contact.right_load_n > 0.0,
+            step_index=int(self._segment.step_index[row]),
+        )
 
 
 def _ticks(duration_s: float) -> int:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from msgs_json.observation import PhaseFlags
 from msgs_json.timing import CONTROL_PERIOD_S
 from sim_node.contact import FloorContact
 
@@ -33,6 +34,7 @@ class ControlTick(NamedTuple):
     """(x, y) [m]"""
     zmp_error_m: float
     """Norm of measured minus reference ZMP."""
+    phase: PhaseFlags
 
 
 class TickSums(NamedTuple):

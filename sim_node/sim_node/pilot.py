@@ -71,17 +71,16 @@ class Pilot:
         self.biped.end(cause)
         return self.observe()
 
-    def is_over(self, result: EpisodeResult) -> bool:
-        """Return whether this result ends the present walk.
+    def check_result(self, result: EpisodeResult) -> None:
+        """Refuse a result that is not about the present walk.
 
         Raises:
-            RefusedMessageError: it is about another walk.
+            RefusedMessageError: it is about another one.
         """
-        if self.observation is None or result.episode != self.walks:
+        if result.episode != self.walks:
             raise RefusedMessageError(
                 f"result of walk {result.episode}, the present one is {self.walks}"
             )
-        return True
 
     def _check(self, clock_ticks: int, segment: WaistSegment) -> None:
         expected = None if self.observation is None else self.observation.clock_ticks

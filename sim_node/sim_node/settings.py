@@ -79,3 +79,23 @@ class SimSettings:
 
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
+
+
+@dataclass(frozen=True)
+class SimNodeSettings:
+    """All of the simulation node."""
+
+    sim: SimSettings = section(SimSettings)
+    segment_rows: int = setting(
+        60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
+    )
+    publish_every_ticks: int = setting(
+        1, "control ticks", "1 publishes at 500 Hz, 10 at 50 Hz", lower=1, upper=1000
+    )
+    timeout_s: float = setting(
+        5.0, "s", "silence of a peer after which a walk is given up", above=0.0
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from msgs_json.settings import SettingsError, check_ranges, setting
+from msgs_json.settings import SettingsError, check_ranges, section, setting
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,24 @@ class CorrectionSettings:
         lower=0.2, upper=2.0,
     )  # fmt: skip
     order: int = setting(3, "", "order of the B-spline (degree + 1)", lower=3, upper=4)
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class TrajectorySettings:
+    """All of the trajectory node."""
+
+    gait: GaitSettings = section(GaitSettings)
+    correction: CorrectionSettings = section(CorrectionSettings)
+    correction_limit_m: float = setting(
+        0.024, "m", "corrections beyond this are refused", above=0.0, upper=0.2
+    )
+    look_ahead_ticks: int = setting(
+        50, "control ticks", "reference handed out beyond a segment", lower=1, upper=600
+    )
 
     def __post_init__(self) -> None:
         """Refuse values out of range."""

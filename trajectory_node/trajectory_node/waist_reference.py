@@ -43,8 +43,9 @@ class WaistReference:
             )
         self.plan = plan_gait(gait)
         self.static_waist = static_waist(self.plan, gait.waist_height_m)
-        self._rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
-        self._spline = CorrectionSpline(correction, self._rows)
+        self.rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
+        """Rows of every segment."""
+        self._spline = CorrectionSpline(correction, self.rows)
         self._tick = 0
 
     @property
@@ -96,7 +97,7 @@ class WaistReference:
         if self._tick >= self.plan.ticks:
             raise TrajectoryError(f"the walk of {self.plan.ticks} ticks is over")
         first = self._tick
-        rows = slice(first, first + self._rows)
+        rows = slice(first, first + self.rows)
         waist = self.static_waist[rows].copy()
         waist[:, :2] += self._spline.push(action_m)
         n_ticks = min(TICKS_PER_LEARNING_TICK, self.plan.ticks - first)

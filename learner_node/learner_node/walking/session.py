@@ -66,6 +66,8 @@ class LearningSession:
         self.frozen = False
         """Set by a user: walks are greedy, and nothing is learned."""
         self._trial_due = False
+        self.walking = False
+        """Whether a walk is under way; checkpoints are taken between walks."""
         self._walk: WalkLearner | FrozenWalk = self.learner
 
     @property
@@ -94,8 +96,10 @@ class LearningSession:
             self._walk = (
                 self.greedy() if self.frozen or self._trial_due else self.learner
             )
+            self.walking = True
         answer = self._walk.respond(observation)
         if isinstance(answer, EpisodeResult):
+            self.walking = False
             self._count(answer)
         return answer
 
@@ -103,10 +107,11 @@ class LearningSession:
         """Return a frozen greedy walk of the present memory."""
         return greedy_walk(self.settings, self.walk_ticks, self.learner.agent)
 
-    def status(self) -> LearnerStatus:
-        """Return how far the session has come."""
+    def status(self, instance: str) -> LearnerStatus:
+        """Return how far the session has come, under the learner's name."""
         agent, schedule = self.learner.agent, self.learner.schedule
         return LearnerStatus(
+            instance=instance,
             seed=self.seed,
             target_time_s=seconds(schedule.target_ticks),
             subtask=schedule.subtask,

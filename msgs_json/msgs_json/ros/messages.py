@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import PointStamped, Transform, Vector3Stamped
+from geometry_msgs.msg import Vector3Stamped
 from numpy.typing import NDArray
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import MultiDOFJointTrajectory, MultiDOFJointTrajectoryPoint
+from rclpy.serialization import deserialize_message
 
 from msgs_json.refusal import RefusedMessageError
-from msgs_json.ros.cdr import MessageTemplate
+from msgs_json.ros.cdr import MessageTemplate, read_stamp
 from msgs_json.segment import WaistSegment
 from msgs_json.timing import CONTROL_PERIOD_US
+from msgs_json.wire import MalformedMessageError
 
 WORLD_FRAME = "world"
 # One transform each per control tick; only translations are used. `phase` holds flags:
@@ -31,74 +29,74 @@ SEGMENT_PARTS = (
     "extent",
 )
 _AXES = 3
+_NO_ROTATION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 
 
 def clock_template() -> MessageTemplate:
     """Return /clock."""
-    return MessageTemplate(lambda _: Clock(), 0, stamped=True)
+    return MessageTemplate(stamped=True).finished()
 
 
 def joint_state_template(
     names: Sequence[str], *, with_effort: bool
 ) -> MessageTemplate:
     """Return joint states: positions, velocities and, if asked for, efforts."""
-    n = len(names)
-
-    def make(values: Sequence[float]) -> JointState:
-        message = JointState(name=list(names))
-        message.position = values[:n]
-        message.velocity = values[n : 2 * n]
-        message.effort = values[2 * n :]
-        return message
-
-    return MessageTemplate(make, (3 if with_effort else 2) * n, stamped=True)
+    template = MessageTemplate(stamped=True).text("").integer(len(names))
+    for name in names:
+        template.text(name)
+    for present in (True, True, with_effort):
+        template.integer(len(names) if present else 0)
+        for _ in names if present else ():
+            template.value()
+    return template.finished()
 
 
 def point_template() -> MessageTemplate:
     """Return a point on the floor: x and y."""
-
-    def make(values: Sequence[float]) -> PointStamped:
-        message = PointStamped()
-        message.header.frame_id = WORLD_FRAME
-        message.point.x, message.point.y = values
-        return message
-
-    return MessageTemplate(make, 2, stamped=True)
+    template = MessageTemplate(stamped=True).text(WORLD_FRAME)
+    return template.value().value().constant(0.0).finished()
 
 
-def correction_template(instance: str) -> MessageTemplate:
-    """Return a correction (dx, dy) of the learner that bears this name."""
+def correction_template(learner: str) -> MessageTemplate:
+    """Return a correction (dx, dy) of the learner of this name."""
+    template = MessageTemplate(stamped=True).text(learner)
+    return template.value().value().constant(0.0).finished()
 
-    def make(values: Sequence[float]) -> Vector3Stamped:
-        message = Vector3Stamped()
-        message.header.frame_id = instance
-        message.vector.x, message.vector.y = values
-        return message
 
-    return MessageTemplate(make, 2, stamped=True)
+def correction_of(message: bytes) -> tuple[str, int, NDArray[np.float64]]:
+    """Return learner, clock ticks and (dx, dy) [m] of a correction.
+
+    Raises:
+        MalformedMessageError: not a correction, or its time lies between two ticks.
+    """
+    try:
+        correction = deserialize_message(message, Vector3Stamped)
+    except Exception as error:
+        raise MalformedMessageError(f"Vector3Stamped: {error}") from None
+    ticks = read_stamp(message, 4)
+    if ticks is None:
+        raise MalformedMessageError("Vector3Stamped: its stamp is not a control tick")
+    vector = correction.vector
+    return correction.header.frame_id, ticks, np.array([vector.x, vector.y])
 
 
 def segment_template(rows: int) -> MessageTemplate:
     """Return a waist segment of so many control ticks."""
-
-    def make(values: Sequence[float]) -> MultiDOFJointTrajectory:
-        cells = np.reshape(values, (rows, len(SEGMENT_PARTS), _AXES))
-        message = MultiDOFJointTrajectory(joint_names=list(SEGMENT_PARTS))
-        message.header.frame_id = WORLD_FRAME
-        for row in range(rows):
-            point = MultiDOFJointTrajectoryPoint()
-            point.time_from_start = Duration(nanosec=row * CONTROL_PERIOD_US * 1000)
-            for part in range(len(SEGMENT_PARTS)):
-                transform = Transform()
-                x, y, z = (float(v) for v in cells[row, part])
-                transform.translation.x = x
-                transform.translation.y = y
-                transform.translation.z = z
-                point.transforms.append(transform)
-            message.points.append(point)
-        return message
-
-    return MessageTemplate(make, rows * len(SEGMENT_PARTS) * _AXES, stamped=True)
+    template = MessageTemplate(stamped=True).text(WORLD_FRAME)
+    template.integer(len(SEGMENT_PARTS))
+    for part in SEGMENT_PARTS:
+        template.text(part)
+    template.integer(rows)
+    for row in range(rows):
+        template.integer(len(SEGMENT_PARTS))
+        for _ in SEGMENT_PARTS:
+            template.value().value().value()
+            for component in _NO_ROTATION:
+                template.constant(component)
+        # Neither velocities nor accelerations; time from start.
+        template.integer(0).integer(0).integer(0)
+        template.integer(row * CONTROL_PERIOD_US * 1000)
+    return template.finished()
 
 
 def segment_values(segment: WaistSegment) -> NDArray[np.float64]:

@@ -1,0 +1,142 @@
+"""The learner on ROS: an observation in, a correction or an episode's result out."""
+
+from __future__ import annotations
+
+import uuid
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from msgs_json import topics
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.learner_status import LearnerStatus
+from msgs_json.observation import Observation
+from msgs_json.refusal import RefusedMessageError
+from msgs_json.ros.cdr import string_message, string_text
+from msgs_json.ros.guarded import GuardedNode
+from msgs_json.ros.messages import correction_template
+from msgs_json.wire import decode, encode
+from std_srvs.srv import SetBool, Trigger
+
+from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
+from learner_node.walking.session import LearningSession
+
+NAME = "learner_node"
+_STATUS_PERIOD_S = 1.0
+
+
+@dataclass(frozen=True)
+class CheckpointPlan:
+    """Where the session is kept, and how often."""
+
+    file: Path
+    every_episodes: int
+    settings: dict[str, object]
+    """Of the whole run, kept in the file for whoever reads it."""
+
+
+class LearnerNode(GuardedNode):
+    """A learning session between two topics."""
+
+    def __init__(
+        self, session: LearningSession, checkpoint: CheckpointPlan | None = None
+    ) -> None:
+        """Go on from the checkpoint, if there is one.
+
+        Raises:
+            CheckpointError: the file is there, but cannot be used.
+        """
+        super().__init__(NAME)
+        self.instance = f"learner-{uuid.uuid4().hex[:8]}"
+        self.session = session
+        self._checkpoint = checkpoint
+        if checkpoint is not None and checkpoint.file.exists():
+            header, arrays = read_checkpoint(checkpoint.file)
+            try:
+                session.restore(header, arrays)
+            except (KeyError, TypeError, ValueError) as error:
+                raise CheckpointError(f"{checkpoint.file}: does not fit, {error}") from error
+        self._save_due = False
+        self._seen = ("", -1)
+        self._corrections = self.publisher(topics.CORRECTION)
+        self._episodes = self.publisher(topics.EPISODE)
+        self._status = self.publisher(topics.LEARNER_STATUS)
+        self._template = correction_template(self.instance)
+        self.listen(topics.OBSERVATION, self._on_observation)
+        self.listen(topics.LEARNER_STATUS, self._on_status)
+        self.create_timer(_STATUS_PERIOD_S, self._publish_status)
+        self.create_service(Trigger, f"{NAME}/save_memory", self._on_save)
+        self.create_service(SetBool, f"{NAME}/freeze", self._on_freeze)
+        self._publish_status()
+
+    def save(self) -> None:
+        """Write the checkpoint, if one is planned."""
+        if self._checkpoint is not None:
+            header = {"settings": self._checkpoint.settings, **self.session.header()}
+            write_checkpoint(self._checkpoint.file, header, self.session.arrays())
+
+    def _on_observation(self, message: bytes) -> None:
+        observation = decode(Observation, string_text(message))
+        simulation, clock_ticks = self._seen
+        if observation.simulation == simulation and (
+            observation.clock_ticks <= clock_ticks
+        ):
+            raise RefusedMessageError(
+                f"observation of clock tick {observation.clock_ticks} comes after that "
+                f"of {clock_ticks}"
+            )
+        self._seen = (observation.simulation, observation.clock_ticks)
+        answer = self.session.respond(observation)
+        if isinstance(answer, EpisodeResult):
+            self._finish(answer)
+        else:
+            self._corrections.publish(
+                self._template.fill(np.asarray(answer), observation.clock_ticks)
+            )
+
+    def _finish(self, result: EpisodeResult) -> None:
+        plan = self._checkpoint
+        if plan is not None and (
+            self._save_due or self.session.episodes % plan.every_episodes == 0
+        ):
+            self.save()
+            self._save_due = False
+        self._publish_status()
+        self._episodes.publish(string_message(encode(result)))
+
+    def _on_status(self, message: bytes) -> None:
+        status = decode(LearnerStatus, string_text(message))
+        if status.instance != self.instance:
+            raise RefusedMessageError(
+                f"a second learner is on this graph: {status.instance} beside "
+                f"{self.instance}"
+            )
+
+    def _publish_status(self) -> None:
+        self._status.publish(
+            string_message(encode(self.session.status(self.instance)))
+        )
+
+    def _on_save(
+        self, _: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        if self._checkpoint is None:
+            response.message = "no checkpoint file was given at the start"
+            return response
+        if self.session.walking:
+            self._save_due = True
+            response.message = f"will be saved to {self._checkpoint.file} at the walk's end"
+        else:
+            self.save()
+            response.message = f"saved to {self._checkpoint.file}"
+        response.success = True
+        return response
+
+    def _on_freeze(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        self.session.frozen = request.data
+        response.success = True
+        word = "frozen: greedy walks" if request.data else "learning"
+        response.message = f"{word} from the next walk on"
+        return response

@@ -1,0 +1,148 @@
+"""The simulated robot on ROS: waist segments in, observations and 500 Hz topics out."""
+
+from __future__ import annotations
+
+import time
+import uuid
+
+import numpy as np
+from biped_description.urdf import urdf_path
+from diagnostic_msgs.msg import DiagnosticStatus
+from msgs_json import topics
+from msgs_json.end_cause import EndCause
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.observation import Observation
+from msgs_json.refusal import RefusedMessageError
+from msgs_json.ros.cdr import string_message, string_text
+from msgs_json.ros.guarded import GuardedNode
+from msgs_json.ros.messages import segment_of, segment_template
+from msgs_json.wire import MalformedMessageError, decode, encode
+from std_srvs.srv import SetBool, Trigger
+
+from sim_node.biped import SimulatedBiped
+from sim_node.pilot import Pilot
+from sim_node.settings import SimNodeSettings
+from sim_node.tick_publisher import TickPublisher
+
+NAME = "sim_node"
+_WATCH_PERIOD_S = 0.1
+
+
+class SimNode(GuardedNode):
+    """Lockstep: the robot walks a segment when it comes, as fast as all can."""
+
+    def __init__(self, settings: SimNodeSettings, rng: np.random.Generator) -> None:
+        """Wait for the stance, then stand and begin the first walk."""
+        super().__init__(NAME)
+        self._settings = settings
+        self._rng = rng
+        self._pilot: Pilot | None = None
+        self._paused = False
+        self._held: bytes | None = None
+        self._heard = time.monotonic()
+        self._correction_seen = -1
+        self._ticks = TickPublisher(self, settings.publish_every_ticks)
+        self._observations = self.publisher(topics.OBSERVATION)
+        description = self.publisher(topics.ROBOT_DESCRIPTION)
+        description.publish(string_message(urdf_path().read_text()))
+        self._stance_template = segment_template(rows=1)
+        self._template = segment_template(settings.segment_rows)
+        self.listen(topics.STANCE, self._on_stance)
+        self.listen(topics.WAIST_REFERENCE, self._on_segment)
+        self.listen(topics.EPISODE, self._on_episode)
+        self.create_timer(_WATCH_PERIOD_S, self._watch_peers)
+        self.create_service(SetBool, f"{NAME}/pause", self._on_pause)
+        self.create_service(Trigger, f"{NAME}/reset", self._on_reset)
+
+    def close(self) -> None:
+        """End the world."""
+        if self._pilot is not None:
+            self._pilot.biped.close()
+
+    # -- messages ------------------------------------------------------------------
+
+    def _on_stance(self, message: bytes) -> None:
+        read = self._stance_template.read(message)
+        if read is None:
+            raise MalformedMessageError("stance: not a waist reference of one row")
+        if self._pilot is None:
+            biped = SimulatedBiped(
+                self._settings.sim,
+                segment_of(read[0]),
+                self._rng,
+                self._ticks.publish,
+                name=uuid.uuid4().hex[:8],
+            )
+            self._pilot = Pilot(biped)
+            self._publish(self._pilot.begin())
+
+    def _on_segment(self, message: bytes) -> None:
+        if self._paused:
+            self._held = message
+            return
+        read = self._template.read(message)
+        if read is None:
+            raise MalformedMessageError(
+                f"waist reference: not {self._settings.segment_rows} rows of this form"
+            )
+        if self._pilot is None:
+            raise RefusedMessageError("no stance is known yet")
+        values, clock_ticks = read
+        self._publish(self._pilot.execute(clock_ticks, segment_of(values)))
+
+    def _on_episode(self, message: bytes) -> None:
+        result = decode(EpisodeResult, string_text(message))
+        if self._pilot is None:
+            raise RefusedMessageError("no walk has begun yet")
+        self._pilot.check_result(result)
+        self._publish(self._pilot.begin())
+
+    # -- peers ---------------------------------------------------------------------
+
+    def _watch_peers(self) -> None:
+        silent_s = time.monotonic() - self._heard
+        if self._pilot is None or self._paused or silent_s < self._settings.timeout_s:
+            return
+        peer = self._silent_peer()
+        text = f"{peer} has been silent for {silent_s:.1f} s; the walk is given up"
+        self.get_logger().error(text)
+        self.remark(DiagnosticStatus.ERROR, "silent peer", text)
+        # A walk cut short is reported first; if nobody reacts, a new one is offered.
+        self._publish(self._pilot.end(EndCause.PEER_SILENT) or self._pilot.begin())
+
+    def _silent_peer(self) -> str:
+        for topic, peer in (
+            (topics.CORRECTION, "learner_node"),
+            (topics.WAIST_REFERENCE, "trajectory_node"),
+        ):
+            if self.count_publishers(topic.name) == 0:
+                return f"{peer} (not on the graph)"
+        return "learner_node or trajectory_node"
+
+    def _publish(self, observation: Observation) -> None:
+        self._heard = time.monotonic()
+        self._observations.publish(string_message(encode(observation)))
+
+    # -- services ------------------------------------------------------------------
+
+    def _on_pause(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        self._paused = request.data
+        self._heard = time.monotonic()
+        held, self._held = self._held, None
+        if not self._paused and held is not None:
+            self._on_segment(held)
+        response.success = True
+        response.message = "paused" if request.data else "walking"
+        return response
+
+    def _on_reset(
+        self, _: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        ended = self._pilot.end(EndCause.RESET) if self._pilot is not None else None
+        if ended is not None:
+            self._publish(ended)
+        response.success = ended is not None
+        response.message = "walk ended" if response.success else "no walk to end"
+        return response
