@@ -61,6 +61,7 @@ class NaiveXol:
         self.states: list[State] = []
         self.queue: list[Decision] = []  # newest last
         self.state = None
+        self.failures_in_a_row = 0
         if settings.decomposed:
             self.components = space.n_components
             self.alternatives = space.n_alternatives
@@ -261,6 +262,7 @@ class NaiveXol:
         self.state = following
 
     def reward(self, value, counts):
+        self.failures_in_a_row = 0
         for decision in self.queue:
             if not decision.state.fixed:
                 for i, j in enumerate(decision.chosen):
@@ -279,6 +281,7 @@ class NaiveXol:
                     state.fixed = not self.is_penalty_state(state)
 
     def penalise(self, penalty):
+        self.failures_in_a_row += 1
         settings = self.settings
         blamed = self.last_states(settings.failure_reach)
         known = {state for state in self.states if self.is_penalty_state(state)}
@@ -302,7 +305,9 @@ class NaiveXol:
 
     def release(self):
         mode = self.settings.fixed_mode
-        if mode.release == "nearest":
+        patience = mode.patience_episodes
+        impatient = patience > 0 and self.failures_in_a_row % patience == 0
+        if mode.release == "nearest" or impatient:
             fixed = [s for s in self.last_states(len(self.queue)) if s.fixed]
             fixed = fixed[: mode.released_states]
         else:

@@ -9,7 +9,8 @@ import pytest
 from biped_description.dimensions import BIPED
 from biped_description.joints import TORQUE_LIMIT
 from biped_description.kinematics import leg_joint_positions
-from sim_node.control_tick import TickSums, sum_up
+from sim_node.contact import FloorContact
+from sim_node.control_tick import ControlTick, TickSums, sum_up
 
 DT = 0.002  # control tick [s]
 STRETCH = 230  # learning ticks, past two single supports
@@ -258,6 +259,18 @@ def test_a_tick_that_fails_midway_counts_up_to_the_failure(walker, static_walk):
     assert end.torque_integral_n2m2_s == pytest.approx(expected, rel=1e-12)
 
 
+def test_a_tick_that_fails_midway_shows_the_velocity_error_of_the_failure(
+    walker, static_walk
+):
+    end = walker.walk(static_walk)[-1]
+    segment = static_walk[end.control_tick // 10]
+    row = end.control_tick % 10
+    aim = np.diff(joint_references(segment), axis=0)[row - 1] / DT
+    expected = np.abs(aim - walker.ticks[-1].joint_velocity).mean()
+    found = end.mean_joint_velocity_error_rad_s
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
 def test_a_short_segment_counts_its_own_ticks_only(sturdy_walker, shaky_walk):
     sturdy_walker.walk(shaky_walk[:3])
     sturdy_walker.forget()
@@ -272,6 +285,27 @@ def test_a_short_segment_counts_its_own_ticks_only(sturdy_walker, shaky_walk):
 
 def test_no_control_tick_sums_up_to_nothing():
     assert sum_up([], np.empty((0, 12)), hashlib.sha256()) == TickSums()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"joint_position": (1e-15,) + 11 * (0.0,)},
+        {"joint_velocity": 11 * (0.0,) + (1e-15,)},
+        {"joint_torque": 11 * (0.0,) + (1e-15,)},
+        {"contact": FloorContact(1e-15, 0.0, 140.0, 140.0, 0.0)},
+        {"contact": FloorContact(0.0, 1e-15, 140.0, 140.0, 0.0)},
+    ],
+    ids=["position", "velocity", "torque", "zmp_x", "zmp_y"],
+)
+def test_the_hash_takes_in_every_measurement(change):
+    still = 12 * (0.0,)
+    contact = FloorContact(0.0, 0.0, 140.0, 140.0, 0.0)
+    tick = ControlTick(1, list(still), still, still, still, contact, 0.0)
+    hashes = hashlib.sha256(), hashlib.sha256()
+    for each, trajectory in zip((tick, tick._replace(**change)), hashes, strict=True):
+        sum_up([each], np.zeros((2, 12)), trajectory)
+    assert hashes[0].digest() != hashes[1].digest()
 
 
 def test_an_undisturbed_walk_stays_clear_of_the_torque_limits(

@@ -1,26 +1,54 @@
 """Standard output and error belong to the project, not to the engine."""
 
-import ctypes
 import os
 import subprocess
 import sys
 
 import pytest
 
+BUILD_A_WORLD = "import sim_node.world as w; w.World().close()"
+CHATTER = """
+import ctypes, sys
 from sim_node.quiet import engine_chatter_dropped
 
+c = ctypes.CDLL(None)
+print("python before")
+sys.stdout.flush()
+c.puts(b"c before")
+try:
+    with engine_chatter_dropped():
+        c.puts(b"chatter")
+        c.perror(b"chatter")
+        raise RuntimeError
+except RuntimeError:
+    pass
+c.puts(b"c after")
+c.fflush(None)
+print("python after")
+print("error after", file=sys.stderr)
+"""
 
-def print_from_c(text: str) -> None:
-    ctypes.CDLL(None).puts(text.encode())
+
+def run(program: str) -> subprocess.CompletedProcess[str]:
+    """Run a program whose output is buffered, as it is by default into a pipe."""
+    env = {k: v for k, v in os.environ.items() if k != "PYTHONUNBUFFERED"}
+    return subprocess.run(
+        [sys.executable, "-c", program],
+        env=env,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
 
 
 @pytest.fixture(scope="module")
 def world_builder():
-    """Run a program that builds a world, in a process of its own."""
-    program = "import sim_node.world as w; w.World().close()"
-    return subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
+    return run(BUILD_A_WORLD)
+
+
+@pytest.fixture(scope="module")
+def chatterer():
+    return run(CHATTER)
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
@@ -28,39 +56,14 @@ def test_building_a_world_prints_nothing(world_builder, stream):
     assert getattr(world_builder, stream) == ""
 
 
-def test_what_c_prints_meanwhile_is_dropped(capfd):
-    with engine_chatter_dropped():
-        print_from_c("chatter")
-    ctypes.CDLL(None).fflush(None)
-    assert capfd.readouterr().out == ""
+def test_only_what_is_printed_meanwhile_is_dropped_from_standard_output(chatterer):
+    assert chatterer.stdout.splitlines() == [
+        "python before",
+        "c before",
+        "c after",
+        "python after",
+    ]
 
 
-def test_what_c_writes_to_standard_error_meanwhile_is_dropped(capfd):
-    with engine_chatter_dropped():
-        os.write(2, b"chatter")
-    assert capfd.readouterr().err == ""
-
-
-def test_what_c_prints_before_and_after_is_kept(capfd):
-    print_from_c("before")
-    with engine_chatter_dropped():
-        print_from_c("chatter")
-    print_from_c("after")
-    ctypes.CDLL(None).fflush(None)
-    assert capfd.readouterr().out == "before\nafter\n"
-
-
-def test_what_python_prints_before_and_after_is_kept(capfd):
-    print("before")
-    with engine_chatter_dropped():
-        pass
-    print("after")
-    assert capfd.readouterr().out == "before\nafter\n"
-
-
-def test_an_error_gives_standard_output_back(capfd):
-    with pytest.raises(RuntimeError), engine_chatter_dropped():
-        raise RuntimeError
-    print_from_c("after")
-    ctypes.CDLL(None).fflush(None)
-    assert capfd.readouterr().out == "after\n"
+def test_only_what_is_printed_meanwhile_is_dropped_from_standard_error(chatterer):
+    assert chatterer.stderr == "error after\n"

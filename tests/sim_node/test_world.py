@@ -5,6 +5,7 @@ import pybullet
 import pytest
 
 from biped_description.dimensions import BIPED
+from biped_description.kinematics import leg_joint_positions
 from biped_description.links import LINK_MASSES
 from sim_node.errors import SimulationError, SnapshotError, WorldClosedError
 from sim_node.world import World
@@ -106,6 +107,22 @@ def test_without_torque_the_joints_are_free(world):
     )
     world.step(STANDING.tolist(), STANDING.tolist())
     assert world.joint_states()[1][4] == pytest.approx(3.0, abs=0.05)
+
+
+def test_sliding_soles_are_braked_by_friction_times_weight(world):
+    waist, left_foot = np.array([[0.0, 0.0, 0.475]]), np.array([[0.0, 0.09, 0.0]])
+    q = leg_joint_positions(waist, left_foot, left_foot * (1.0, -1.0, 1.0))[0]
+    world.set_friction(0.05)
+    world.place(waist[0], q)
+    for _ in range(150):
+        world.step(q.tolist(), STANDING.tolist())
+    pybullet.resetBaseVelocity(
+        world.robot, (1.0, 0.0, 0.0), physicsClientId=world.client
+    )
+    for _ in range(100):
+        world.step(q.tolist(), STANDING.tolist())
+    speed = momentum(world)[0] / BIPED.total_mass
+    assert speed == pytest.approx(1.0 - 0.05 * 9.81 * 0.2, abs=0.005)
 
 
 def test_mass_factors_scale_mass_and_inertia(world):

@@ -67,6 +67,7 @@ def problems(draw):
             rewards_to_fix=draw(st.integers(1, 3)),
             counted=draw(st.sampled_from(("episode", "queue"))),
             released_states=draw(st.integers(0, 3)),
+            patience_episodes=draw(st.integers(0, 3)),
             release=draw(st.sampled_from(("last_decisions", "nearest"))),
         ),
     )

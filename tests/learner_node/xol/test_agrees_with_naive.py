@@ -39,6 +39,8 @@ def differences(agent, naive):
         for name, (array, rows) in pairs.items()
         if count and not np.array_equal(array[:count], rows)
     ]
+    if agent.failures_in_a_row != naive.failures_in_a_row:
+        found.append("failures in a row")
     if agent.queue.eligibility[count:].any():
         found.append("E of no state")
     return found
@@ -87,6 +89,9 @@ LONG_RUNS = {
     ),
     "queue": replace(
         BASE, fixed_mode=FixedModeSettings(rewards_to_fix=2, counted="queue")
+    ),
+    "impatient": replace(
+        BASE, fixed_mode=FixedModeSettings(rewards_to_fix=2, patience_episodes=2)
     ),
     "undecomposed": replace(BASE, decomposed=False),
     "uniform": replace(

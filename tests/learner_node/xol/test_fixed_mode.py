@@ -236,6 +236,44 @@ def test_the_nearest_fixed_states_must_be_in_the_queue():
     assert fixed_letters(agent, "AB") == "A"
 
 
+def failures_until_released(letters, walked, most=12, **fixed_mode):
+    """How many failures it takes until each fixed state is released, None if more."""
+    agent = fixed_agent(letters, fixed_mode=fixed_mode)
+    released = dict.fromkeys(letters)
+    for failure in range(1, most + 1):
+        failed_walk(agent, walked, "1" * len(walked))
+        for letter in letters:
+            if released[letter] is None and not is_fixed(agent, letter):
+                released[letter] = failure
+    return released
+
+
+def test_when_patience_ends_the_nearest_fixed_states_are_released():
+    released = failures_until_released("ABCD", "ABCDXYZ", patience_episodes=4, most=4)
+    assert released == {"A": None, "B": 4, "C": 4, "D": 4}
+
+
+def test_when_patience_ends_again_the_next_nearest_are_released():
+    released = failures_until_released(
+        "ABC", "ABCXYZ", patience_episodes=3, released_states=1
+    )
+    assert released == {"A": 9, "B": 6, "C": 3}
+
+
+def test_endless_patience_releases_only_what_is_near():
+    released = failures_until_released("AB", "ABXYZ", patience_episodes=0, most=30)
+    assert released == {"A": None, "B": None}
+
+
+def test_a_reward_restores_patience():
+    agent = fixed_agent("AB", fixed_mode={"patience_episodes": 3})
+    for _ in range(4):
+        for _ in range(2):
+            failed_walk(agent, "ABXYZ", "11000")
+        rewarded_walk(agent, "W", "0", counts=False)
+    assert fixed_letters(agent, "AB") == "AB"
+
+
 def test_a_released_state_counts_its_rewards_from_zero():
     agent = fixed_agent("A")
     failed_walk(agent, "A", "1")
