@@ -7,6 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from std_srvs.srv import SetBool, Trigger
+
+from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
+from learner_node.walking.session import LearningSession
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
@@ -16,10 +20,6 @@ from msgs_json.ros.cdr import string_message, string_text
 from msgs_json.ros.guarded import GuardedNode
 from msgs_json.ros.messages import correction_template
 from msgs_json.wire import decode, encode
-from std_srvs.srv import SetBool, Trigger
-
-from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
-from learner_node.walking.session import LearningSession
 
 NAME = "learner_node"
 _STATUS_PERIOD_S = 1.0
@@ -55,7 +55,9 @@ class LearnerNode(GuardedNode):
             try:
                 session.restore(header, arrays)
             except (KeyError, TypeError, ValueError) as error:
-                raise CheckpointError(f"{checkpoint.file}: does not fit, {error}") from error
+                raise CheckpointError(
+                    f"{checkpoint.file}: does not fit, {error}"
+                ) from error
         self._save_due = False
         self._seen = ("", -1)
         self._corrections = self.publisher(topics.CORRECTION)
@@ -113,9 +115,7 @@ class LearnerNode(GuardedNode):
             )
 
     def _publish_status(self) -> None:
-        self._status.publish(
-            string_message(encode(self.session.status(self.instance)))
-        )
+        self._status.publish(string_message(encode(self.session.status(self.instance))))
 
     def _on_save(
         self, _: Trigger.Request, response: Trigger.Response
@@ -125,7 +125,9 @@ class LearnerNode(GuardedNode):
             return response
         if self.session.walking:
             self._save_due = True
-            response.message = f"will be saved to {self._checkpoint.file} at the walk's end"
+            response.message = (
+                f"will be saved to {self._checkpoint.file} at the walk's end"
+            )
         else:
             self.save()
             response.message = f"saved to {self._checkpoint.file}"

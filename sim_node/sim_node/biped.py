@@ -25,8 +25,8 @@ from msgs_json.segment import WaistSegment
 from msgs_json.timing import (
     CONTROL_PERIOD_S,
     CONTROL_PERIOD_US,
-    LEARNING_PERIOD_S,
     microseconds,
+    seconds,
 )
 from sim_node.contact import NO_CONTACT, FloorContact, floor_contact
 from sim_node.control_tick import ControlTick, sum_up
@@ -45,7 +45,7 @@ _IK_END_CAUSE = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BipedSnapshot:
     """A walk in its middle; valid for the biped that made it, until released."""
 
@@ -53,6 +53,26 @@ class BipedSnapshot:
     watch: _Watch
     disturbance: Disturbance
     rng_state: dict[str, Any]
+    references: _References
+
+
+@dataclass(frozen=True)
+class _References:
+    """A segment with the joint motion that follows it."""
+
+    segment: WaistSegment
+    rows: int
+    """Rows that the legs can reach, from the first on."""
+    q: list[list[float]]
+    """(rows, 12) [rad]"""
+    dq: list[list[float]]
+    """(rows - 1, 12) from each row to the next [rad/s]"""
+    zmp: list[list[float]]
+    """(rows, 2) [m]"""
+
+
+def _standing_references(start: WaistSegment) -> _References:
+    return _References(segment=start, rows=1, q=[], dq=[], zmp=[])
 
 
 @dataclass
@@ -109,12 +129,8 @@ class SimulatedBiped:
         self._unloaded_limit = _ticks(limits.unloaded_feet_s)
         self._saturation_limit = _ticks(limits.torque_saturation_s)
         self._torque_marks = [_SATURATED * limit for limit in self.world.torque_limits]
-        self._segment = start
-        self._solved_rows = 1
-        self._unsolved_cause: EndCause | None = None
-        self._q_reference: list[list[float]] = []
-        self._dq_reference: list[list[float]] = []
-        self._zmp_reference: list[list[float]] = []
+        self._references = _standing_references(start)
+        self._snapshots: set[BipedSnapshot] = set()
         # Measured since the last observation.
         self._ticks: list[ControlTick] = []
         self._disturbance = draw_disturbance(
@@ -149,8 +165,8 @@ class SimulatedBiped:
             contact=contact,
             waist_velocity=(float(velocity[0]), float(velocity[1])),
         )
-        self._segment = self._start
-        self._solved_rows = 1
+        self._references = _standing_references(self._start)
+        self._ticks.clear()
         return self.observe()
 
     def execute(self, segment: WaistSegment) -> Observation:
@@ -194,6 +210,8 @@ class SimulatedBiped:
                 f"{segment.first_tick + rows - 1}, "
                 f"the robot is at tick {watch.control_tick}"
             )
+        if segment.n_ticks < 1 or not np.isfinite(segment.zmp_reference[:rows]).all():
+            raise ValueError("segment without a tick, or with a number not finite")
         q_reference = np.empty((rows, len(JOINT_NAMES)))
         status, row, _ = kinematics.solve_legs(
             segment.waist[:rows],
@@ -203,15 +221,17 @@ class SimulatedBiped:
         )
         if status == kinematics.NOT_FINITE:
             raise ValueError(f"segment has a number that is not finite, row {row}")
-        self._solved_rows = rows if status == kinematics.SOLVED else row
-        self._unsolved_cause = _IK_END_CAUSE.get(status)
-        if self._solved_rows <= segment.n_ticks:
-            watch.end_cause = self._unsolved_cause
+        solved_rows = rows if status == kinematics.SOLVED else row
+        if solved_rows <= segment.n_ticks:
+            watch.end_cause = _IK_END_CAUSE[status]
             return
-        self._segment = segment
-        self._q_reference = q_reference.tolist()
-        self._dq_reference = (np.diff(q_reference, axis=0) / CONTROL_PERIOD_S).tolist()
-        self._zmp_reference = segment.zmp_reference[:rows].tolist()
+        self._references = _References(
+            segment=segment,
+            rows=solved_rows,
+            q=q_reference.tolist(),
+            dq=(np.diff(q_reference, axis=0) / CONTROL_PERIOD_S).tolist(),
+            zmp=segment.zmp_reference[:rows].tolist(),
+        )
 
     def advance(self) -> ControlTick:
         """Walk one control tick along the references.
@@ -221,15 +241,13 @@ class SimulatedBiped:
         """
         self._check_walking()
         watch = self._watch
-        row = watch.control_tick - self._segment.first_tick
         if self.ticks_ahead < 1:
             raise ValueError(f"no reference for tick {watch.control_tick + 1}")
         self._push()
-        dq_reference = self._dq_reference[row]
-        self.world.step(self._q_reference[row], dq_reference)
-        tick = self._read(
-            self._q_reference[row + 1], dq_reference, self._zmp_reference[row + 1]
-        )
+        references, row = self._references, self._row()
+        dq_reference = references.dq[row]
+        self.world.step(references.q[row], dq_reference)
+        tick = self._read(references.q[row + 1], dq_reference, references.zmp[row + 1])
         self._ticks.append(tick)
         if self.on_tick is not None:
             self.on_tick(tick)
@@ -241,24 +259,25 @@ class SimulatedBiped:
         Numbers that the physics left undefined are reported as zero, with the end
         cause `physics_nan`.
         """
-        watch, segment = self._watch, self._segment
-        row = self._planned_row()
+        watch, segment = self._watch, self._references.segment
+        row = self._row()
         waist, velocity = self.world.waist()
         right_support = bool(segment.right_support[row])
         support_foot = (segment.right_foot if right_support else segment.left_foot)[row]
         zmp_error = np.subtract(watch.contact[:2], segment.zmp_reference[row])
-        acceleration = (
-            np.subtract(velocity[:2], watch.waist_velocity) / LEARNING_PERIOD_S
-        )
+        if not np.isfinite(waist).all():
+            watch.end_cause = EndCause.PHYSICS_NAN
+        # Over the time since the last observation; the walk's last one is shorter.
+        period_s = seconds(max(1, len(self._ticks)))
+        acceleration = np.subtract(velocity[:2], watch.waist_velocity) / period_s
         watch.waist_velocity = (float(velocity[0]), float(velocity[1]))
         waist_in_support_foot = waist[:2] - support_foot[:2]
-        noise = self.settings.disturbances
-        if noise.position_noise_m > 0.0:
-            waist_in_support_foot += noise.position_noise_m * self._rng.standard_normal(2)  # fmt: skip  # noqa: E501
-        if noise.zmp_noise_m > 0.0:
-            zmp_error += noise.zmp_noise_m * self._rng.standard_normal(2)
-        if noise.acceleration_noise_m_s2 > 0.0:
-            acceleration += noise.acceleration_noise_m_s2 * self._rng.standard_normal(2)
+        # Drawn also where its size is zero, so that a size changes no other draw.
+        noise = self._rng.standard_normal((3, 2))
+        sizes = self.settings.disturbances
+        waist_in_support_foot += sizes.position_noise_m * noise[0]
+        zmp_error += sizes.zmp_noise_m * noise[1]
+        acceleration += sizes.acceleration_noise_m_s2 * noise[2]
         sums = sum_up(self._ticks, watch.trajectory)
         self._ticks.clear()
         return Observation(
@@ -283,8 +302,7 @@ class SimulatedBiped:
     @property
     def ticks_ahead(self) -> int:
         """Control ticks for which there are references."""
-        row = self._watch.control_tick - self._segment.first_tick
-        return self._solved_rows - 1 - row
+        return self._references.rows - 1 - self._row()
 
     @property
     def end_cause(self) -> EndCause | None:
@@ -311,28 +329,40 @@ class SimulatedBiped:
     def snapshot(self) -> BipedSnapshot:
         """Keep the walk as it stands, so that `restore` continues it bit for bit."""
         self.world.check_open()
-        return BipedSnapshot(
+        snapshot = BipedSnapshot(
             world_state=self.world.save(),
             watch=self._watch.copy(),
             disturbance=self._disturbance,
             rng_state=copy.deepcopy(dict(self._rng.bit_generator.state)),
+            references=self._references,
         )
+        self._snapshots.add(snapshot)
+        return snapshot
 
     def restore(self, snapshot: BipedSnapshot) -> None:
-        """Go back to a snapshot of this biped."""
-        self.world.check_open()
+        """Go back to a snapshot of this biped.
+
+        Raises:
+            SnapshotError: it is another biped's, or was released.
+        """
+        self._check_own(snapshot)
         self.world.load(snapshot.world_state)
         self._watch = snapshot.watch.copy()
         self._disturbance = snapshot.disturbance
         if self.settings.disturbances.mass_error > 0.0:
             self.world.set_mass_factors(snapshot.disturbance.mass_factors)
         self._rng.bit_generator.state = snapshot.rng_state
+        self._references = snapshot.references
+        self._ticks.clear()
 
     def release(self, snapshot: BipedSnapshot) -> None:
-        """Free a snapshot that is no longer needed."""
-        self.world.check_open()
-        if snapshot.world_state == self._standing:
-            raise SnapshotError("the standing robot is needed for every reset")
+        """Free a snapshot that is no longer needed.
+
+        Raises:
+            SnapshotError: it is another biped's, or was released before.
+        """
+        self._check_own(snapshot)
+        self._snapshots.remove(snapshot)
         self.world.release(snapshot.world_state)
 
     def close(self) -> None:
@@ -341,7 +371,16 @@ class SimulatedBiped:
 
     # -- inner steps ---------------------------------------------------------------
 
+    def _check_own(self, snapshot: BipedSnapshot) -> None:
+        self.world.check_open()
+        # The engine numbers states per world and uses numbers again.
+        if snapshot not in self._snapshots:
+            raise SnapshotError(
+                f"snapshot {snapshot.world_state} is not kept by this robot's world"
+            )
+
     def _check_walking(self) -> None:
+        self.world.check_open()
         if self._watch.end_cause is not None:
             raise ValueError(f"the walk is over: {self._watch.end_cause}")
 
@@ -409,18 +448,20 @@ class SimulatedBiped:
             self._phase(),
         )
 
-    def _planned_row(self) -> int:
-        return self._watch.control_tick - self._segment.first_tick
+    def _row(self) -> int:
+        """Return the row of the references at which the robot is."""
+        return self._watch.control_tick - self._references.segment.first_tick
 
     def _phase(self) -> PhaseFlags:
-        row, contact = self._planned_row(), self._watch.contact
+        row, contact = self._row(), self._watch.contact
+        segment = self._references.segment
         return PhaseFlags(
-            planned_right_support=bool(self._segment.right_support[row]),
-            planned_double_support=bool(self._segment.double_support[row]),
+            planned_right_support=bool(segment.right_support[row]),
+            planned_double_support=bool(segment.double_support[row]),
             measured_right_support=contact.right_load_n > contact.left_load_n,
             measured_double_support=contact.left_load_n > 0.0
             and contact.right_load_n > 0.0,
-            step_index=int(self._segment.step_index[row]),
+            step_index=int(segment.step_index[row]),
         )
 
 

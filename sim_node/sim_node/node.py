@@ -6,8 +6,10 @@ import time
 import uuid
 
 import numpy as np
-from biped_description.urdf import urdf_path
 from diagnostic_msgs.msg import DiagnosticStatus
+from std_srvs.srv import SetBool, Trigger
+
+from biped_description.urdf import urdf_path
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
@@ -17,8 +19,6 @@ from msgs_json.ros.cdr import string_message, string_text
 from msgs_json.ros.guarded import GuardedNode
 from msgs_json.ros.messages import segment_of, segment_template
 from msgs_json.wire import MalformedMessageError, decode, encode
-from std_srvs.srv import SetBool, Trigger
-
 from sim_node.biped import SimulatedBiped
 from sim_node.pilot import Pilot
 from sim_node.settings import SimNodeSettings

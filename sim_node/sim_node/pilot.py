@@ -10,7 +10,6 @@ from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.refusal import RefusedMessageError
 from msgs_json.segment import WaistSegment
-
 from sim_node.biped import SimulatedBiped
 
 

@@ -13,7 +13,6 @@ from msgs_json.ros.messages import (
     point_template,
 )
 from msgs_json.wire import encode
-
 from sim_node.control_tick import ControlTick
 
 

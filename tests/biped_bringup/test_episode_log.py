@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-
 from biped_bringup.episode_log import EpisodeLog
+
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms, EpisodeResult
 

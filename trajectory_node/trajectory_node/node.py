@@ -13,7 +13,6 @@ from msgs_json.ros.messages import (
 )
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import decode
-
 from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference

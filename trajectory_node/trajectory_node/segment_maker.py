@@ -7,12 +7,12 @@ They belong together by the time of the simulation's clock that both carry.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
+
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.refusal import RefusedMessageError
 from msgs_json.segment import WaistSegment
-from numpy.typing import NDArray
-
 from trajectory_node.waist_reference import WaistReference
 
 

@@ -1,7 +1,7 @@
 """Messages as bytes, filled in and read without building Python objects.
 
 A message object of the 500 Hz topics takes 30 us and more to make and serialize. All
-messages of such a topic are alike but for some numbers, so one is written as a template,
+messages of such a topic are alike but for some numbers: one is written as a template,
 and from then on only its numbers are set or read. Little-endian plain CDR.
 """
 

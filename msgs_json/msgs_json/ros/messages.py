@@ -37,9 +37,7 @@ def clock_template() -> MessageTemplate:
     return MessageTemplate(stamped=True).finished()
 
 
-def joint_state_template(
-    names: Sequence[str], *, with_effort: bool
-) -> MessageTemplate:
+def joint_state_template(names: Sequence[str], *, with_effort: bool) -> MessageTemplate:
     """Return joint states: positions, velocities and, if asked for, efforts."""
     template = MessageTemplate(stamped=True).text("").integer(len(names))
     for name in names:

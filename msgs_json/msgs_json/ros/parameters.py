@@ -32,7 +32,7 @@ def _declared(node: Node, cls: type[Any], prefix: str) -> dict[str, Any]:
     hints = get_type_hints(cls)
     for field in dataclasses.fields(cls):
         kind = hints[field.name]
-        if dataclasses.is_dataclass(kind):
+        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
             values[field.name] = _declared(node, kind, f"{prefix}{field.name}.")
         elif field.default != ():  # an empty list has no type in ROS
             parameter = node.declare_parameter(

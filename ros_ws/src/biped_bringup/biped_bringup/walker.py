@@ -40,9 +40,7 @@ class Walker:
             on_tick: called after every control tick.
         """
         self.reference = WaistReference(settings.gait, settings.correction)
-        self.biped = SimulatedBiped(
-            settings.sim, self.reference.stance(), rng, on_tick
-        )
+        self.biped = SimulatedBiped(settings.sim, self.reference.stance(), rng, on_tick)
         self._walks = 0
 
     @property
