@@ -24,11 +24,15 @@ REFUSED = {
         r"cannot walk this gait: .*right leg are 0\.48\d* m apart, .* spans only .* m"
     ),
     "check --set gait.double_support_s=2": r"must be below step_period_s = 1\.875 s",
+    "check --set learner.schedule.first_target_s=1.0e-7": (
+        r"first_target_s = 1e-07: must be at least"
+    ),
     "check --set gait.steps": r"must have the form section\.key=value",
     "check --config none.yaml": r"none\.yaml'.*cannot be read",
     "walk --static --tds -0.1": r"double_support_s = -0\.1: must be above 0\.0 s",
     "walk --static --tds nan": r"double_support_s = 'nan': must be a number",
     "walk --static --figure none/zmp.png": r"none: is not a folder",
+    "walk --static --figure out": r"out: ",
     "walk --memory none.npz": r"none\.npz: no such file",
     "walk --memory a_file": r"a_file: not a biped checkpoint",
     "walk --memory .": r"\.: not a biped checkpoint.*directory",

@@ -51,17 +51,17 @@ class FixedModeSettings:
         15, "rewards", "K of Strategy 1: rewards after which a state is fixed", lower=1
     )
     counted: str = setting(
-        "episode",
+        "queue",
         "",
-        "a reward counts for all states visited in the episode, or only those still "
-        "in the queue",
-        choices=("episode", "queue"),
+        "a reward counts for the states still in the queue, or for all states visited "
+        "in the episode",
+        choices=("queue", "episode"),
     )
     released_states: int = setting(
         3, "states", "how many fixed states ahead of a penalty are released", lower=0
     )
     patience_episodes: int = setting(
-        10,
+        30,
         "failures",
         "after this many failures in a row, and again after as many more, the nearest "
         "fixed states in the queue are released; 0: never",
