@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import sys
 import uuid
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from std_srvs.srv import SetBool, Trigger
 
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
+from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
@@ -19,45 +22,40 @@ from msgs_json.refusal import RefusedMessageError
 from msgs_json.ros.cdr import string_message, string_text
 from msgs_json.ros.guarded import GuardedNode
 from msgs_json.ros.messages import correction_template
+from msgs_json.ros.parameters import declared_settings
+from msgs_json.ros.running import run_node
 from msgs_json.wire import decode, encode
 
 NAME = "learner_node"
 _STATUS_PERIOD_S = 1.0
 
 
-@dataclass(frozen=True)
-class CheckpointPlan:
-    """Where the session is kept, and how often."""
-
-    file: Path
-    every_episodes: int
-    settings: dict[str, object]
-    """Of the whole run, kept in the file for whoever reads it."""
-
-
 class LearnerNode(GuardedNode):
     """A learning session between two topics."""
 
-    def __init__(
-        self, session: LearningSession, checkpoint: CheckpointPlan | None = None
-    ) -> None:
+    def __init__(self, **options: Any) -> None:
         """Go on from the checkpoint, if there is one.
+
+        Args:
+            options: of `rclpy.node.Node`, such as `parameter_overrides`.
 
         Raises:
             CheckpointError: the file is there, but cannot be used.
         """
-        super().__init__(NAME)
+        super().__init__(NAME, **options)
+        settings = declared_settings(self, LearnerNodeSettings)
+        self._settings = settings
         self.instance = f"learner-{uuid.uuid4().hex[:8]}"
-        self.session = session
-        self._checkpoint = checkpoint
-        if checkpoint is not None and checkpoint.file.exists():
-            header, arrays = read_checkpoint(checkpoint.file)
+        self.session = LearningSession(
+            settings.learner, settings.walk_ticks, settings.seed
+        )
+        self._file = Path(settings.checkpoint_file) if settings.checkpoint_file else None
+        if self._file is not None and self._file.exists():
+            header, arrays = read_checkpoint(self._file)
             try:
-                session.restore(header, arrays)
+                self.session.restore(header, arrays)
             except (KeyError, TypeError, ValueError) as error:
-                raise CheckpointError(
-                    f"{checkpoint.file}: does not fit, {error}"
-                ) from error
+                raise CheckpointError(f"{self._file}: does not fit, {error}") from error
         self._save_due = False
         self._seen = ("", -1)
         self._corrections = self.publisher(topics.CORRECTION)
@@ -71,11 +69,17 @@ class LearnerNode(GuardedNode):
         self.create_service(SetBool, f"{NAME}/freeze", self._on_freeze)
         self._publish_status()
 
+    def close(self) -> None:
+        """Save what was learned, if the session stands between two walks."""
+        if not self.session.walking:
+            self.save()
+
     def save(self) -> None:
         """Write the checkpoint, if one is planned."""
-        if self._checkpoint is not None:
-            header = {"settings": self._checkpoint.settings, **self.session.header()}
-            write_checkpoint(self._checkpoint.file, header, self.session.arrays())
+        if self._file is not None:
+            run_settings = json.loads(self._settings.run_settings)
+            header = {"settings": run_settings, **self.session.header()}
+            write_checkpoint(self._file, header, self.session.arrays())
 
     def _on_observation(self, message: bytes) -> None:
         observation = decode(Observation, string_text(message))
@@ -97,13 +101,14 @@ class LearnerNode(GuardedNode):
             )
 
     def _finish(self, result: EpisodeResult) -> None:
-        plan = self._checkpoint
-        if plan is not None and (
-            self._save_due or self.session.episodes % plan.every_episodes == 0
-        ):
+        every = self._settings.checkpoint_every_episodes
+        enough = 0 < self._settings.max_episodes <= self.session.episodes
+        if self._save_due or enough or self.session.episodes % every == 0:
             self.save()
             self._save_due = False
         self._publish_status()
+        if enough and not self.session.trial_due:
+            return  # without a result no further walk begins
         self._episodes.publish(string_message(encode(result)))
 
     def _on_status(self, message: bytes) -> None:
@@ -120,17 +125,17 @@ class LearnerNode(GuardedNode):
     def _on_save(
         self, _: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        if self._checkpoint is None:
+        if self._file is None:
             response.message = "no checkpoint file was given at the start"
             return response
         if self.session.walking:
             self._save_due = True
             response.message = (
-                f"will be saved to {self._checkpoint.file} at the walk's end"
+                f"will be saved to {self._file} at the walk's end"
             )
         else:
             self.save()
-            response.message = f"saved to {self._checkpoint.file}"
+            response.message = f"saved to {self._file}"
         response.success = True
         return response
 
@@ -142,3 +147,12 @@ class LearnerNode(GuardedNode):
         word = "frozen: greedy walks" if request.data else "learning"
         response.message = f"{word} from the next walk on"
         return response
+
+
+def main() -> int:
+    """Run the node as a process."""
+    return run_node(LearnerNode)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 import time
 import uuid
+from typing import Any
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -18,6 +20,9 @@ from msgs_json.refusal import RefusedMessageError
 from msgs_json.ros.cdr import string_message, string_text
 from msgs_json.ros.guarded import GuardedNode
 from msgs_json.ros.messages import segment_of, segment_template
+from msgs_json.ros.parameters import declared_settings
+from msgs_json.ros.running import run_node
+from msgs_json.seeds import robot_stream
 from msgs_json.wire import MalformedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
 from sim_node.pilot import Pilot
@@ -31,11 +36,16 @@ _WATCH_PERIOD_S = 0.1
 class SimNode(GuardedNode):
     """Lockstep: the robot walks a segment when it comes, as fast as all can."""
 
-    def __init__(self, settings: SimNodeSettings, rng: np.random.Generator) -> None:
-        """Wait for the stance, then stand and begin the first walk."""
-        super().__init__(NAME)
+    def __init__(self, **options: Any) -> None:
+        """Wait for the stance, then stand and begin the first walk.
+
+        Args:
+            options: of `rclpy.node.Node`, such as `parameter_overrides`.
+        """
+        super().__init__(NAME, **options)
+        settings = declared_settings(self, SimNodeSettings)
         self._settings = settings
-        self._rng = rng
+        self._rng = np.random.default_rng(robot_stream(settings.seed))
         self._pilot: Pilot | None = None
         self._paused = False
         self._held: bytes | None = None
@@ -146,3 +156,12 @@ class SimNode(GuardedNode):
         response.success = ended is not None
         response.message = "walk ended" if response.success else "no walk to end"
         return response
+
+
+def main() -> int:
+    """Run the node as a process."""
+    return run_node(SimNode)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -86,6 +86,7 @@ class SimNodeSettings:
     """All of the simulation node."""
 
     sim: SimSettings = section(SimSettings)
+    seed: int = setting(0, "", "of the disturbances", lower=0)
     segment_rows: int = setting(
         60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
     )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from typing import Any
+
 from msgs_json import topics
 from msgs_json.observation import Observation
 from msgs_json.ros.cdr import string_text
@@ -11,6 +14,8 @@ from msgs_json.ros.messages import (
     segment_template,
     segment_values,
 )
+from msgs_json.ros.parameters import declared_settings
+from msgs_json.ros.running import run_node
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import decode
 from trajectory_node.segment_maker import SegmentMaker
@@ -23,13 +28,17 @@ NAME = "trajectory_node"
 class TrajectoryNode(GuardedNode):
     """Publishes the stance once, and a segment per learning tick."""
 
-    def __init__(self, settings: TrajectorySettings) -> None:
+    def __init__(self, **options: Any) -> None:
         """Plan the gait and announce the stance.
+
+        Args:
+            options: of `rclpy.node.Node`, such as `parameter_overrides`.
 
         Raises:
             InfeasibleGaitError: the robot cannot walk this gait.
         """
-        super().__init__(NAME)
+        super().__init__(NAME, **options)
+        settings = declared_settings(self, TrajectorySettings)
         reference = WaistReference(
             settings.gait, settings.correction, settings.look_ahead_ticks
         )
@@ -56,3 +65,12 @@ class TrajectoryNode(GuardedNode):
         if segment is not None:
             values = segment_values(segment)
             self._segments.publish(self._template.fill(values, clock_ticks))
+
+
+def main() -> int:
+    """Run the node as a process."""
+    return run_node(TrajectoryNode)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

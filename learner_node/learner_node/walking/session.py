@@ -22,6 +22,7 @@ from learner_node.walking.settings import LearnerSettings
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
+from msgs_json.seeds import learner_stream
 from msgs_json.timing import seconds
 
 _MEMORY, _LOG = "memory", "log"
@@ -184,13 +185,3 @@ class LearningSession:
         self._trial_due = (
             result.schedule_complete and result.completed and not self.learned
         )
-
-
-def learner_stream(seed: int) -> np.random.SeedSequence:
-    """Return the learner's stream of a seed."""
-    return np.random.SeedSequence(seed).spawn(2)[0]
-
-
-def robot_stream(seed: int) -> np.random.SeedSequence:
-    """Return the disturbances' stream of a seed."""
-    return np.random.SeedSequence(seed).spawn(2)[1]

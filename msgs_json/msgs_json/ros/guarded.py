@@ -43,6 +43,9 @@ class GuardedNode(Node):  # type: ignore[misc]
         self._diagnostics = self.publisher(topics.DIAGNOSTICS)
         self.create_timer(_DIAGNOSTICS_PERIOD_S, self._publish_diagnostics)
 
+    def close(self) -> None:
+        """Let go of what is not ROS's; nodes override it."""
+
     def publisher(self, topic: Topic) -> Publisher:
         """Return a publisher of a topic of the graph."""
         return self.create_publisher(

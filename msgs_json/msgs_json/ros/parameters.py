@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from typing import Any, TypeVar, get_type_hints
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
-from msgs_json.settings import from_mapping
+from msgs_json.settings import from_mapping, to_mapping
 
 Settings = TypeVar("Settings")
 _LARGEST_INTEGER = 2**63 - 1
@@ -25,6 +27,25 @@ def declared_settings(node: Node, cls: type[Settings]) -> Settings:
         SettingsError: a value is out of range, naming key, value and what is allowed.
     """
     return from_mapping(cls, _declared(node, cls, ""))
+
+
+def parameters_of(settings: Any) -> list[Parameter]:
+    """Return the parameters that make `declared_settings` return these settings."""
+    return [
+        Parameter(name, value=value)
+        for name, value in flattened(to_mapping(settings)).items()
+    ]
+
+
+def flattened(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return nested settings by dotted name, as parameter files want them."""
+    flat: dict[str, Any] = {}
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            flat.update(flattened(value, f"{prefix}{key}."))
+        elif value != []:  # an empty list has no type in ROS
+            flat[f"{prefix}{key}"] = value
+    return flat
 
 
 def _declared(node: Node, cls: type[Any], prefix: str) -> dict[str, Any]:

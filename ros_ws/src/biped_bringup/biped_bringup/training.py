@@ -15,8 +15,9 @@ from biped_bringup.walker import Walker
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.learner import WalkLearner
-from learner_node.walking.session import LearningSession, Tally, robot_stream
+from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
+from msgs_json.seeds import robot_stream
 from msgs_json.settings import SettingsError, from_mapping, to_mapping
 from msgs_json.timing import seconds
 
@@ -132,8 +133,10 @@ class TrainingRun:
         try:
             run = cls(from_mapping(RunSettings, header["settings"]), header["seed"])
             run.session.restore(header, arrays)
-            run._robot_rng.bit_generator.state = header["robot_rng"]
-            run.cpu_s = float(header["cpu_s"])
+            # A learner on ROS does not know the robot's generator.
+            if "robot_rng" in header:
+                run._robot_rng.bit_generator.state = header["robot_rng"]
+            run.cpu_s = float(header.get("cpu_s", 0.0))
         except (KeyError, TypeError, ValueError, SettingsError) as error:
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise CheckpointError(
