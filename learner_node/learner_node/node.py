@@ -49,13 +49,17 @@ class LearnerNode(GuardedNode):
         self.session = LearningSession(
             settings.learner, settings.walk_ticks, settings.seed
         )
-        self._file = Path(settings.checkpoint_file) if settings.checkpoint_file else None
+        self._file = (
+            Path(settings.checkpoint_file) if settings.checkpoint_file else None
+        )
         if self._file is not None and self._file.exists():
             header, arrays = read_checkpoint(self._file)
             try:
                 self.session.restore(header, arrays)
             except (KeyError, TypeError, ValueError) as error:
                 raise CheckpointError(f"{self._file}: does not fit, {error}") from error
+        self.session.frozen = settings.frozen
+        self._done = False
         self._save_due = False
         self._seen = ("", -1)
         self._corrections = self.publisher(topics.CORRECTION)
@@ -76,12 +80,14 @@ class LearnerNode(GuardedNode):
 
     def save(self) -> None:
         """Write the checkpoint, if one is planned."""
-        if self._file is not None:
+        if self._file is not None and not self._settings.frozen:
             run_settings = json.loads(self._settings.run_settings)
             header = {"settings": run_settings, **self.session.header()}
             write_checkpoint(self._file, header, self.session.arrays())
 
     def _on_observation(self, message: bytes) -> None:
+        if self._done:
+            return  # the walk that the robot offers now is nobody's
         observation = decode(Observation, string_text(message))
         simulation, clock_ticks = self._seen
         if observation.simulation == simulation and (
@@ -102,13 +108,13 @@ class LearnerNode(GuardedNode):
 
     def _finish(self, result: EpisodeResult) -> None:
         every = self._settings.checkpoint_every_episodes
-        enough = 0 < self._settings.max_episodes <= self.session.episodes
-        if self._save_due or enough or self.session.episodes % every == 0:
+        session = self.session
+        walked = session.tally.evaluations if session.frozen else session.episodes
+        self._done = 0 < self._settings.max_episodes <= walked and not session.trial_due
+        if self._save_due or self._done or session.episodes % every == 0:
             self.save()
             self._save_due = False
         self._publish_status()
-        if enough and not self.session.trial_due:
-            return  # without a result no further walk begins
         self._episodes.publish(string_message(encode(result)))
 
     def _on_status(self, message: bytes) -> None:
@@ -130,9 +136,7 @@ class LearnerNode(GuardedNode):
             return response
         if self.session.walking:
             self._save_due = True
-            response.message = (
-                f"will be saved to {self._file} at the walk's end"
-            )
+            response.message = f"will be saved to {self._file} at the walk's end"
         else:
             self.save()
             response.message = f"saved to {self._file}"

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from msgs_json.settings import check_ranges, section, setting
-
 from learner_node.walking.settings import LearnerSettings
+from msgs_json.settings import check_ranges, section, setting
 
 
 @dataclass(frozen=True)
@@ -18,14 +17,15 @@ class LearnerNodeSettings:
     walk_ticks: int = setting(
         5625, "control ticks", "the whole walk, the last target", lower=1
     )
-    checkpoint_file: str = setting("", "", "kept here, and gone on from; empty: nowhere")
+    frozen: bool = setting(False, "", "walk greedily from the start, learn nothing")
+    max_episodes: int = setting(
+        0, "episodes", "stop answering after so many; 0: never", lower=0
+    )
+    checkpoint_file: str = setting("", "", "goes on from here, and is kept here")
     checkpoint_every_episodes: int = setting(
         10, "episodes", "learning episodes between saves", lower=1
     )
-    max_episodes: int = setting(
-        0, "episodes", "stop to answer after so many learning episodes; 0: never", lower=0
-    )
-    run_settings: str = setting("{}", "", "settings of the whole run, JSON, kept with it")
+    run_settings: str = setting("{}", "", "settings of the whole run, kept with it")
 
     def __post_init__(self) -> None:
         """Refuse values out of range."""

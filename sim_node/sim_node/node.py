@@ -23,14 +23,18 @@ from msgs_json.ros.messages import segment_of, segment_template
 from msgs_json.ros.parameters import declared_settings
 from msgs_json.ros.running import run_node
 from msgs_json.seeds import robot_stream
+from msgs_json.segment import WaistSegment
 from msgs_json.wire import MalformedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
 from sim_node.pilot import Pilot
+from sim_node.realtime import RealtimeLoop
 from sim_node.settings import SimNodeSettings
 from sim_node.tick_publisher import TickPublisher
 
 NAME = "sim_node"
 _WATCH_PERIOD_S = 0.1
+# The learner and the trajectory want every observation.
+_LISTENERS = 2
 
 
 class SimNode(GuardedNode):
@@ -47,10 +51,10 @@ class SimNode(GuardedNode):
         self._settings = settings
         self._rng = np.random.default_rng(robot_stream(settings.seed))
         self._pilot: Pilot | None = None
+        self._loop: RealtimeLoop | None = None
         self._paused = False
         self._held: bytes | None = None
         self._heard = time.monotonic()
-        self._correction_seen = -1
         self._ticks = TickPublisher(self, settings.publish_every_ticks)
         self._observations = self.publisher(topics.OBSERVATION)
         description = self.publisher(topics.ROBOT_DESCRIPTION)
@@ -66,8 +70,14 @@ class SimNode(GuardedNode):
 
     def close(self) -> None:
         """End the world."""
+        if self._loop is not None:
+            self._loop.stop()
         if self._pilot is not None:
             self._pilot.biped.close()
+
+    def figures(self) -> dict[str, str]:
+        """Return punctuality, in real time."""
+        return {} if self._loop is None else self._loop.punctuality.figures()
 
     # -- messages ------------------------------------------------------------------
 
@@ -84,10 +94,14 @@ class SimNode(GuardedNode):
                 name=uuid.uuid4().hex[:8],
             )
             self._pilot = Pilot(biped)
-            self._publish(self._pilot.begin())
+            if self._settings.pace == "realtime":
+                self._loop = RealtimeLoop(
+                    self._pilot, self._settings.realtime_factor, self._publish
+                )
+                self._loop.start()
 
     def _on_segment(self, message: bytes) -> None:
-        if self._paused:
+        if self._paused and self._loop is None:
             self._held = message
             return
         read = self._template.read(message)
@@ -98,27 +112,78 @@ class SimNode(GuardedNode):
         if self._pilot is None:
             raise RefusedMessageError("no stance is known yet")
         values, clock_ticks = read
-        self._publish(self._pilot.execute(clock_ticks, segment_of(values)))
+        segment = segment_of(values)
+        if self._loop is None:
+            self._publish(self._pilot.execute(clock_ticks, segment))
+        else:
+            self._loop.request(lambda: self._follow(clock_ticks, segment))
+
+    def _follow(self, clock_ticks: int, segment: WaistSegment) -> None:
+        """Take over a segment, in the thread of the real-time loop."""
+        if self._pilot is None or self._loop is None:
+            return
+        try:
+            self._pilot.follow(clock_ticks, segment)
+        except RefusedMessageError as error:
+            self.refuse(topics.WAIST_REFERENCE, "refused", error)
+        else:
+            self._heard = time.monotonic()
+            self._loop.segment_arrived()
 
     def _on_episode(self, message: bytes) -> None:
         result = decode(EpisodeResult, string_text(message))
         if self._pilot is None:
             raise RefusedMessageError("no walk has begun yet")
         self._pilot.check_result(result)
-        self._publish(self._pilot.begin())
+        self._begin()
+
+    def _begin(self) -> None:
+        if self._loop is not None:
+            self._loop.request(self._loop.begin)
+        elif self._pilot is not None:
+            self._publish(self._pilot.begin())
+
+    def _end(self, cause: EndCause) -> bool:
+        """End the walk from outside; return whether one was under way."""
+        if self._pilot is None or self._pilot.biped.end_cause is not None:
+            return False
+        if self._loop is not None:
+            loop = self._loop
+            loop.request(lambda: loop.end(cause))
+            return True
+        observation = self._pilot.end(cause)
+        if observation is not None:
+            self._publish(observation)
+        return observation is not None
 
     # -- peers ---------------------------------------------------------------------
 
     def _watch_peers(self) -> None:
+        if self._pilot is None or self._paused:
+            return
+        if self._pilot.walks == 0:
+            # What is published before all are connected would be lost.
+            if self._connected():
+                self._begin()
+            return
         silent_s = time.monotonic() - self._heard
-        if self._pilot is None or self._paused or silent_s < self._settings.timeout_s:
+        if silent_s < self._settings.timeout_s:
             return
         peer = self._silent_peer()
         text = f"{peer} has been silent for {silent_s:.1f} s; the walk is given up"
         self.get_logger().error(text)
         self.remark(DiagnosticStatus.ERROR, "silent peer", text)
         # A walk cut short is reported first; if nobody reacts, a new one is offered.
-        self._publish(self._pilot.end(EndCause.PEER_SILENT) or self._pilot.begin())
+        self._heard = time.monotonic()
+        if not self._end(EndCause.PEER_SILENT):
+            self._begin()
+
+    def _connected(self) -> bool:
+        listeners = self._observations.get_subscription_count()
+        return listeners >= _LISTENERS and all(
+            self.count_publishers(topic.name) > 0
+            for topic in (topics.WAIST_REFERENCE, topics.CORRECTION, topics.EPISODE)
+        )
 
     def _silent_peer(self) -> str:
         for topic, peer in (
@@ -130,7 +195,8 @@ class SimNode(GuardedNode):
         return "learner_node or trajectory_node"
 
     def _publish(self, observation: Observation) -> None:
-        self._heard = time.monotonic()
+        if self._loop is None:
+            self._heard = time.monotonic()
         self._observations.publish(string_message(encode(observation)))
 
     # -- services ------------------------------------------------------------------
@@ -140,6 +206,9 @@ class SimNode(GuardedNode):
     ) -> SetBool.Response:
         self._paused = request.data
         self._heard = time.monotonic()
+        if self._loop is not None:
+            loop, paused = self._loop, request.data
+            loop.request(lambda: loop.pause(paused))
         held, self._held = self._held, None
         if not self._paused and held is not None:
             self._on_segment(held)
@@ -150,10 +219,7 @@ class SimNode(GuardedNode):
     def _on_reset(
         self, _: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        ended = self._pilot.end(EndCause.RESET) if self._pilot is not None else None
-        if ended is not None:
-            self._publish(ended)
-        response.success = ended is not None
+        response.success = self._end(EndCause.RESET)
         response.message = "walk ended" if response.success else "no walk to end"
         return response
 

@@ -87,6 +87,15 @@ class SimNodeSettings:
 
     sim: SimSettings = section(SimSettings)
     seed: int = setting(0, "", "of the disturbances", lower=0)
+    pace: str = setting(
+        "lockstep",
+        "",
+        "lockstep: as fast as all can; realtime: 500 Hz, waiting for nobody",
+        choices=("lockstep", "realtime"),
+    )
+    realtime_factor: float = setting(
+        1.0, "", "simulated seconds per second, in real time", above=0.0, upper=20.0
+    )
     segment_rows: int = setting(
         60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
     )

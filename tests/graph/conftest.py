@@ -1,4 +1,4 @@
-"""Nodes on a real graph: one executor, or one process each, on a domain of their own."""
+"""Nodes on a real graph, each test on a domain of its own."""
 
 import os
 import subprocess
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+
 from biped_bringup.node_parameters import NodeParameters, node_parameters
 from biped_bringup.run_settings import load_settings
 

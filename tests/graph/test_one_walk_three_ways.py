@@ -3,6 +3,7 @@
 import time
 
 import pytest
+
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.one_executor import OneExecutor
 from biped_bringup.run_settings import load_settings

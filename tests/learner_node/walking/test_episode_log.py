@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from learner_node.walking.episode_log import EpisodeLog
 
+from learner_node.walking.episode_log import EpisodeLog
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms, EpisodeResult
 

@@ -6,14 +6,13 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
+from biped_bringup.run_settings import RunSettings
 from learner_node.settings import LearnerNodeSettings
 from msgs_json.ros.parameters import flattened
 from msgs_json.settings import to_mapping
 from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from sim_node.settings import SimNodeSettings
 from trajectory_node.settings import TrajectorySettings
-
-from biped_bringup.run_settings import RunSettings
 
 _LOOK_AHEAD_TICKS = 50
 
@@ -27,7 +26,7 @@ class NodeParameters:
     learner: LearnerNodeSettings
 
     def flat(self) -> dict[str, dict[str, Any]]:
-        """Return the parameters by node and dotted name, as parameter files hold them."""
+        """Return the parameters by node and dotted name, as in parameter files."""
         return {
             "sim_node": flattened(to_mapping(self.sim)),
             "trajectory_node": flattened(to_mapping(self.trajectory)),
@@ -42,6 +41,8 @@ def node_parameters(
     checkpoint_file: str = "",
     max_episodes: int = 0,
     publish_every_ticks: int = 1,
+    pace: str = "lockstep",
+    frozen: bool = False,
 ) -> NodeParameters:
     """Return the settings of the three nodes.
 
@@ -51,6 +52,8 @@ def node_parameters(
         checkpoint_file: where the learner keeps its session; empty: nowhere.
         max_episodes: learning episodes after which the learner stops; 0: never.
         publish_every_ticks: 1 publishes the 500 Hz topics in full.
+        pace: lockstep or realtime.
+        frozen: walk greedily, learn nothing.
     """
     return NodeParameters(
         sim=SimNodeSettings(
@@ -58,6 +61,7 @@ def node_parameters(
             seed=seed,
             segment_rows=TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS,
             publish_every_ticks=publish_every_ticks,
+            pace=pace,
         ),
         trajectory=TrajectorySettings(
             gait=settings.gait,
@@ -71,6 +75,7 @@ def node_parameters(
             walk_ticks=microseconds(settings.gait.duration_s) // CONTROL_PERIOD_US,
             checkpoint_file=checkpoint_file,
             max_episodes=max_episodes,
+            frozen=frozen,
             run_settings=json.dumps(to_mapping(settings)),
         ),
     )

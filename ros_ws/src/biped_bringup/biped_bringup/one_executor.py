@@ -11,14 +11,14 @@ from collections.abc import Callable
 from types import TracebackType
 
 import rclpy
-from learner_node.node import LearnerNode
-from msgs_json.ros.parameters import parameters_of
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
-from sim_node.node import SimNode
-from trajectory_node.node import TrajectoryNode
 
 from biped_bringup.node_parameters import NodeParameters
+from learner_node.node import LearnerNode
+from msgs_json.ros.parameters import parameters_of
+from sim_node.node import SimNode
+from trajectory_node.node import TrajectoryNode
 
 # The condition is looked at so often.
 _TURN_S = 0.05

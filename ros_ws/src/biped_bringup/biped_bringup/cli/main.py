@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import argcomplete
 
-from biped_bringup.cli import check, learn, walk
+from biped_bringup.cli import check, learn, up, walk
 from biped_bringup.cli.errors import CommandError
 from learner_node.checkpoint import CheckpointError
 from msgs_json.settings import SettingsError
@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
         epilog="exit status: 0 done, 1 not achieved, 2 wrong input, 130 interrupted",
     )
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for verb in (learn, walk, check):
+    for verb in (learn, walk, up, check):
         verb.add_parser(verbs)
     return top
 
