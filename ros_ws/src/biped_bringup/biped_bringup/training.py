@@ -18,7 +18,7 @@ from learner_node.walking.learner import WalkLearner
 from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.seeds import robot_stream
-from msgs_json.settings import SettingsError, from_mapping, to_mapping
+from msgs_json.settings import from_mapping, to_mapping
 from msgs_json.timing import seconds
 
 # Packages whose version can change a walk's last bit.
@@ -42,6 +42,17 @@ class TrainingRun:
         self.walker = Walker(settings, self._robot_rng)
         self.session = LearningSession(settings.learner, self.walker.walk_ticks, seed)
         self.cpu_s = 0.0
+        self.written_by = _versions()
+        """Package versions that wrote the checkpoint gone on from."""
+
+    @property
+    def version_changes(self) -> list[str]:
+        """Packages that differ from those of the checkpoint, in words."""
+        return [
+            f"{name} {self.written_by.get(name, 'unknown')} -> {now}"
+            for name, now in _versions().items()
+            if self.written_by.get(name) != now
+        ]
 
     # -- learning ------------------------------------------------------------------
 
@@ -118,7 +129,7 @@ class TrainingRun:
             **self.session.header(),
             "robot_rng": self._robot_rng.bit_generator.state,
             "cpu_s": self.cpu_s,
-            "versions": {name: version(name) for name in _PACKAGES},
+            "versions": _versions(),
         }
         write_checkpoint(path, header, self.session.arrays())
 
@@ -130,6 +141,7 @@ class TrainingRun:
             CheckpointError: the file is no usable checkpoint.
         """
         header, arrays = read_checkpoint(path)
+        run = None
         try:
             run = cls(from_mapping(RunSettings, header["settings"]), header["seed"])
             run.session.restore(header, arrays)
@@ -137,11 +149,16 @@ class TrainingRun:
             if "robot_rng" in header:
                 run._robot_rng.bit_generator.state = header["robot_rng"]
             run.cpu_s = float(header.get("cpu_s", 0.0))
-        except (KeyError, TypeError, ValueError, SettingsError) as error:
+        except (
+            AttributeError, KeyError, OverflowError, TypeError, ValueError
+        ) as error:  # fmt: skip
+            if run is not None:
+                run.close()
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise CheckpointError(
                 f"{path}: does not fit this program, {reason}"
             ) from error
+        run.written_by = dict(header.get("versions", {}))
         return run
 
     def summary(self, memory_file: Path) -> dict[str, Any]:
@@ -166,3 +183,7 @@ class TrainingRun:
             "trajectory_sha256": tally.trajectories_sha256,
             "memory_file": str(memory_file),
         }
+
+
+def _versions() -> dict[str, str]:
+    return {name: version(name) for name in _PACKAGES}

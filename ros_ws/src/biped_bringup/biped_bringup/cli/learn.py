@@ -68,6 +68,9 @@ def add_parser(verbs: Any) -> None:
         help=f"go on from a {MEMORY_FILE}, bit for bit as if never interrupted",
     )
     parser.add_argument(
+        "--fresh", action="store_true", help=f"replace a {MEMORY_FILE} in --out"
+    )
+    parser.add_argument(
         "--checkpoint-every",
         type=float,
         default=20.0,
@@ -87,7 +90,16 @@ def run(options: argparse.Namespace) -> int:
         or (options.resume.parent if options.resume is not None else _DEFAULT_OUT)
     )
     memory_file = folder / MEMORY_FILE
+    if options.resume is None and memory_file.exists() and not options.fresh:
+        training.close()
+        raise CommandError(
+            f"{memory_file}: is there already; give --resume {memory_file} to go on "
+            "with it, --fresh to replace it, or another --out"
+        )
     console = Console(stderr=True)
+    if training.version_changes:
+        changes = ", ".join(training.version_changes)
+        console.print(f"going on with other versions, not bit for bit: {changes}")
     try:
         with stop_requests() as stops, TrainingProgress(training, console) as progress:
             saved = time.monotonic()
