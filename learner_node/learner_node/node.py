@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
+import time
 import uuid
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rclpy.publisher import Publisher
 from std_srvs.srv import SetBool, Trigger
 
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
@@ -45,7 +47,8 @@ class LearnerNode(GuardedNode):
         super().__init__(NAME, **options)
         settings = declared_settings(self, LearnerNodeSettings)
         self._settings = settings
-        self.instance = f"learner-{uuid.uuid4().hex[:8]}"
+        # Names sort by the time of the start: of two learners, the first stays.
+        self.instance = f"learner-{time.time_ns()}-{uuid.uuid4().hex[:8]}"
         self.session = LearningSession(
             settings.learner, settings.walk_ticks, settings.seed
         )
@@ -62,16 +65,26 @@ class LearnerNode(GuardedNode):
         self._done = False
         self._save_due = False
         self._seen = ("", -1)
-        self._corrections = self.publisher(topics.CORRECTION)
+        self._template = correction_template(self.instance)
+        self._corrections: Publisher | None = None
         self._episodes = self.publisher(topics.EPISODE)
         self._status = self.publisher(topics.LEARNER_STATUS)
-        self._template = correction_template(self.instance)
-        self.listen(topics.OBSERVATION, self._on_observation)
         self.listen(topics.LEARNER_STATUS, self._on_status)
         self.create_timer(_STATUS_PERIOD_S, self._publish_status)
         self.create_service(Trigger, f"{NAME}/save_memory", self._on_save)
         self.create_service(SetBool, f"{NAME}/freeze", self._on_freeze)
         self._publish_status()
+        if settings.listen_s > 0.0:
+            self._listening = self.create_timer(settings.listen_s, self._take_part)
+        else:
+            self._take_part()
+
+    def _take_part(self) -> None:
+        """Answer observations from now on: no other learner has been heard."""
+        if self._corrections is None and self.failure is None:
+            self._corrections = self.publisher(topics.CORRECTION)
+            self.listen(topics.OBSERVATION, self._on_observation)
+            self._publish_status()
 
     def close(self) -> None:
         """Save what was learned, if the session stands between two walks."""
@@ -101,7 +114,7 @@ class LearnerNode(GuardedNode):
         answer = self.session.respond(observation)
         if isinstance(answer, EpisodeResult):
             self._finish(answer)
-        else:
+        elif self._corrections is not None:
             self._corrections.publish(
                 self._template.fill(np.asarray(answer), observation.clock_ticks)
             )
@@ -119,14 +132,20 @@ class LearnerNode(GuardedNode):
 
     def _on_status(self, message: bytes) -> None:
         status = decode(LearnerStatus, string_text(message))
-        if status.instance != self.instance:
-            raise RefusedMessageError(
-                f"a second learner is on this graph: {status.instance} beside "
-                f"{self.instance}"
-            )
+        if status.instance == self.instance:
+            return
+        if status.instance < self.instance:
+            self.failure = f"learner {status.instance} is on this graph already"
+        raise RefusedMessageError(
+            f"a second learner is on this graph: {status.instance} beside "
+            f"{self.instance}"
+        )
 
     def _publish_status(self) -> None:
-        self._status.publish(string_message(encode(self.session.status(self.instance))))
+        status = self.session.status(
+            self.instance, active=self._corrections is not None
+        )
+        self._status.publish(string_message(encode(status)))
 
     def _on_save(
         self, _: Trigger.Request, response: Trigger.Response

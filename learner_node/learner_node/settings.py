@@ -17,6 +17,9 @@ class LearnerNodeSettings:
     walk_ticks: int = setting(
         5625, "control ticks", "the whole walk, the last target", lower=1
     )
+    listen_s: float = setting(
+        1.5, "s", "listen for another learner before taking part", lower=0.0, upper=60.0
+    )
     frozen: bool = setting(False, "", "walk greedily from the start, learn nothing")
     max_episodes: int = setting(
         0, "episodes", "stop answering after so many; 0: never", lower=0

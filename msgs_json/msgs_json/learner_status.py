@@ -19,6 +19,8 @@ class LearnerStatus(
 
     instance: str
     """Name of the running learner; there must be one on a graph."""
+    active: bool
+    """Takes part; before, it listens whether another one does."""
     seed: Count
     target_time_s: float
     subtask: Count

@@ -25,7 +25,11 @@ def in_process():
 
 def test_one_executor_learns_the_same(domain, in_process):
     parameters = node_parameters(
-        load_settings("quick"), SEED, max_episodes=EPISODES, publish_every_ticks=10
+        load_settings("quick"),
+        SEED,
+        max_episodes=EPISODES,
+        publish_every_ticks=10,
+        listen_s=0.0,
     )
     with OneExecutor(parameters, domain) as graph:
         session = graph.learner.session

@@ -91,5 +91,5 @@ def test_settings_of_the_node_out_of_range_are_refused(name, value):
 
 @pytest.mark.parametrize("value", ["0.5", True, None])
 def test_a_setting_made_in_code_has_the_right_type(value):
-    with pytest.raises(SettingsError, match="^friction = .*: must be a number"):
+    with pytest.raises(SettingsError, match=r"^friction = .*: must be a number"):
         DisturbanceSettings(friction=value)

@@ -108,11 +108,12 @@ class LearningSession:
         """Return a frozen greedy walk of the present memory."""
         return greedy_walk(self.settings, self.walk_ticks, self.learner.agent)
 
-    def status(self, instance: str) -> LearnerStatus:
+    def status(self, instance: str, active: bool) -> LearnerStatus:
         """Return how far the session has come, under the learner's name."""
         agent, schedule = self.learner.agent, self.learner.schedule
         return LearnerStatus(
             instance=instance,
+            active=active,
             seed=self.seed,
             target_time_s=seconds(schedule.target_ticks),
             subtask=schedule.subtask,

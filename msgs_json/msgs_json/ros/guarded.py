@@ -38,6 +38,8 @@ class GuardedNode(Node):  # type: ignore[misc]
         super().__init__(name, **options)
         self.counts: Counter[str] = Counter()
         """Messages received, refused and malformed, by topic."""
+        self.failure: str | None = None
+        """Set by a node that cannot go on: why."""
         self._worst = DiagnosticStatus.OK
         self._remarks: dict[str, str] = {}
         self._diagnostics = self.publisher(topics.DIAGNOSTICS)
@@ -78,6 +80,8 @@ class GuardedNode(Node):  # type: ignore[misc]
 
     def remark(self, level: bytes, key: str, text: str) -> None:
         """Put a remark into the next diagnostics, with its severity."""
+        self.failure: str | None = None
+        """Set by a node that cannot go on: why."""
         self._worst = max(self._worst, level)
         self._remarks[key] = text
 
@@ -97,6 +101,8 @@ class GuardedNode(Node):  # type: ignore[misc]
         array = DiagnosticArray(status=[status])
         array.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(array)
+        self.failure: str | None = None
+        """Set by a node that cannot go on: why."""
         self._worst = DiagnosticStatus.OK
         self._remarks.clear()
 

@@ -16,6 +16,7 @@ from msgs_json.ros.guarded import GuardedNode
 from msgs_json.settings import SettingsError
 
 WRONG_INPUT = 2
+REFUSED = 4
 # The events executor cannot be interrupted in an endless spin, so it spins in turns.
 _TURN_S = 0.2
 
@@ -24,7 +25,8 @@ def run_node(make: Callable[[], GuardedNode]) -> int:
     """Make a node, spin it until SIGINT or SIGTERM, and close it.
 
     Returns:
-        The exit status: 0 after an orderly end, 2 for wrong parameters.
+        The exit status: 0 after an orderly end, 2 for wrong parameters, 4 when the node
+        gave up.
     """
     # Signals end the loop below, not the middle of a callback.
     rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
@@ -41,8 +43,11 @@ def run_node(make: Callable[[], GuardedNode]) -> int:
         executor = EventsExecutor()
         executor.add_node(node)
         never: Future = Future()
-        while not stops:
+        while not stops and node.failure is None:
             executor.spin_until_future_complete(never, timeout_sec=_TURN_S)
+        if node.failure is not None:
+            print(f"{node.get_name()} gives up: {node.failure}", file=sys.stderr)
+            return REFUSED
         return 0
     except SettingsError as error:
         print(f"wrong parameter: {error}", file=sys.stderr)

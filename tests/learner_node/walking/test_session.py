@@ -410,9 +410,10 @@ def test_memory_of_other_settings_is_refused():
 
 
 def test_the_status_of_a_new_session():
-    status = new_session(seed=7).status("me")
+    status = new_session(seed=7).status("me", active=True)
     assert status == LearnerStatus(
         instance="me",
+        active=True,
         seed=7,
         target_time_s=0.06,
         subtask=0,
@@ -437,7 +438,7 @@ def test_the_status_tells_how_far_the_schedule_has_come():
     session = new_session()
     for _ in range(3):
         result_of(session)
-    status = session.status("me")
+    status = session.status("me", active=True)
     found = status.subtask, status.successes, status.target_time_s
     assert found == (1, 1, pytest.approx(0.1))
 
@@ -445,14 +446,14 @@ def test_the_status_tells_how_far_the_schedule_has_come():
 def test_the_status_tells_the_estimate():
     session = new_session()
     result_of(session, t_err=2.0)
-    assert session.status("me").t_err_estimate == pytest.approx(2.1)
+    assert session.status("me", active=True).t_err_estimate == pytest.approx(2.1)
 
 
 def test_the_status_tells_episodes_and_their_simulated_time():
     session = new_session()
     result_of(session)
     result_of(session, **FALL)
-    status = session.status("me")
+    status = session.status("me", active=True)
     assert (status.episodes, status.simulated_s) == (2, pytest.approx(0.1))
 
 
@@ -460,12 +461,12 @@ def test_the_status_tells_survival():
     session = new_session()
     result_of(session)
     result_of(session, **FALL)
-    assert session.status("me").survival == pytest.approx(50 / 60)
+    assert session.status("me", active=True).survival == pytest.approx(50 / 60)
 
 
 def test_the_status_tells_the_states_of_the_memory():
     session = learned_session()
-    agent, status = session.learner.agent, session.status("me")
+    agent, status = session.learner.agent, session.status("me", active=True)
     found = status.basis_states, status.fixed_states, status.penalty_states
     assert found == (agent.basis_states, agent.fixed_states, agent.penalty_states)
     assert status.basis_states > 0
@@ -473,7 +474,7 @@ def test_the_status_tells_the_states_of_the_memory():
 
 def test_the_status_tells_both_hashes():
     session = learned_session()
-    status = session.status("me")
+    status = session.status("me", active=True)
     assert (status.memory_sha256, status.trajectory_sha256) == (
         session.learner.memory_sha256(),
         session.tally.trajectories_sha256,
@@ -489,14 +490,19 @@ def test_the_status_tells_both_hashes():
     ],
 )
 def test_the_status_tells_what_is_learned(made, complete, learned):
-    status = made().status("me")
+    status = made().status("me", active=True)
     assert (status.schedule_complete, status.learned) == (complete, learned)
 
 
 def test_the_status_tells_that_a_session_is_frozen():
-    assert frozen_session().status("me").frozen
+    assert frozen_session().status("me", active=True).frozen
+
+
+@pytest.mark.parametrize("active", [True, False])
+def test_the_status_tells_whether_the_learner_takes_part(active):
+    assert new_session().status("me", active).active == active
 
 
 def test_the_status_goes_over_the_wire():
-    status = learned_session().status("me")
+    status = learned_session().status("me", active=True)
     assert decode(LearnerStatus, encode(status)) == status

@@ -43,6 +43,8 @@ def node_parameters(
     publish_every_ticks: int = 1,
     pace: str = "lockstep",
     frozen: bool = False,
+    timeout_s: float = 5.0,
+    listen_s: float = 1.5,
 ) -> NodeParameters:
     """Return the settings of the three nodes.
 
@@ -54,6 +56,8 @@ def node_parameters(
         publish_every_ticks: 1 publishes the 500 Hz topics in full.
         pace: lockstep or realtime.
         frozen: walk greedily, learn nothing.
+        timeout_s: silence of a peer after which a walk is given up.
+        listen_s: how long the learner listens for another one first.
     """
     return NodeParameters(
         sim=SimNodeSettings(
@@ -62,6 +66,7 @@ def node_parameters(
             segment_rows=TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS,
             publish_every_ticks=publish_every_ticks,
             pace=pace,
+            timeout_s=timeout_s,
         ),
         trajectory=TrajectorySettings(
             gait=settings.gait,
@@ -76,6 +81,7 @@ def node_parameters(
             checkpoint_file=checkpoint_file,
             max_episodes=max_episodes,
             frozen=frozen,
+            listen_s=listen_s,
             run_settings=json.dumps(to_mapping(settings)),
         ),
     )

@@ -12,6 +12,7 @@ from types import TracebackType
 
 import rclpy
 from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
 from rclpy.task import Future
 
 from biped_bringup.node_parameters import NodeParameters
@@ -21,7 +22,7 @@ from sim_node.node import SimNode
 from trajectory_node.node import TrajectoryNode
 
 # The condition is looked at so often.
-_TURN_S = 0.05
+_TURN_S = 0.02
 
 
 class OneExecutor:
@@ -54,6 +55,14 @@ class OneExecutor:
         for node in self.nodes:
             self._executor.add_node(node)
         return self
+
+    def add(self, node: Node) -> None:
+        """Have a node of the caller's own spun, too."""
+        self._executor.add_node(node)
+
+    def remove(self, node: Node) -> None:
+        """Spin it no longer."""
+        self._executor.remove_node(node)
 
     def spin_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         """Spin until the condition holds; return whether it did in time."""
