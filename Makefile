@@ -13,7 +13,7 @@ help:  ## list these targets
 install: $(READY)  ## create .venv with the locked packages and the biped itself
 
 run: $(READY)  ## learn a short walk, then walk it and draw its ZMP
-	$(BIN)/biped learn --preset quick --out $(OUT)
+	$(BIN)/biped learn --preset quick --fresh --out $(OUT)
 	$(BIN)/biped walk --memory $(OUT)/memory.npz --figure $(OUT)/zmp.png
 
 test: $(READY)  ## run the tests

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,15 @@ from learner_node.memory_hash import Arrays, arrays_sha256
 FORMAT = "biped checkpoint"
 VERSION = 1
 _HEADER = "header"
+# All that reading a damaged zip has been seen to raise.
+_DAMAGE = (
+    EOFError,
+    KeyError,
+    RuntimeError,
+    ValueError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 class CheckpointError(ValueError):
@@ -58,13 +68,13 @@ def read_checkpoint(path: Path) -> tuple[dict[str, Any], Arrays]:
             content = {name: file[name] for name in file.files}
     except FileNotFoundError:
         raise CheckpointError(f"{path}: no such file") from None
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+    except (AttributeError, TypeError):
+        # numpy returns a bare array for a .npy file, which has no names.
+        raise CheckpointError(f"{path}: not a {FORMAT}") from None
+    except (*_DAMAGE, OSError) as error:
         raise CheckpointError(
             f"{path}: not a {FORMAT}, or damaged ({_one_line(error)})"
         ) from error
-    except AttributeError:
-        # numpy returns a bare array for a .npy file, which has no names.
-        raise CheckpointError(f"{path}: not a {FORMAT}") from None
     try:
         header = json.loads(str(content.pop(_HEADER)))
         found = (header["format"], header["version"])

@@ -9,8 +9,9 @@ class EndCause(str, Enum):
     """Reasons for an episode's end.
 
     The first is success. The next two are the penalties of Table 1. The `ik_` and
-    `torque_` ones are the further failures that Section 4 names. The last three mean
-    that the physics itself can no longer be trusted.
+    `torque_` ones are the further failures that Section 4 names. `foot_through_floor`
+    and `physics_nan` mean that the physics itself can no longer be trusted. The last
+    two come from outside: who guides the robot fell silent, or a user asked for it.
     """
 
     COMPLETED = "completed"
@@ -22,6 +23,8 @@ class EndCause(str, Enum):
     FEET_UNLOADED = "feet_unloaded"
     FOOT_THROUGH_FLOOR = "foot_through_floor"
     PHYSICS_NAN = "physics_nan"
+    PEER_SILENT = "peer_silent"
+    RESET = "reset"
 
     def __str__(self) -> str:
         """Return the word itself."""

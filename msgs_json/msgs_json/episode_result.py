@@ -5,9 +5,10 @@ from __future__ import annotations
 import msgspec
 
 from msgs_json.end_cause import EndCause
+from msgs_json.observation import Count
 
 
-class CostTerms(msgspec.Struct, frozen=True, kw_only=True):
+class CostTerms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The six terms of T_err, eq. (2), in the order of the paper; they add up to it."""
 
     zmp: float
@@ -30,14 +31,24 @@ class CostTerms(msgspec.Struct, frozen=True, kw_only=True):
         )
 
 
-class EpisodeResult(msgspec.Struct, frozen=True, kw_only=True):
+class EpisodeResult(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    forbid_unknown_fields=True,
+    tag_field="version",
+    tag=1,
+):
     """One walk, from standing to its end."""
 
-    episode: int
+    episode: Count
+    """Number of the walk, as the simulation counts."""
+    learning: bool
+    """Whether the learner learned from it; a trial is walked frozen."""
     end_cause: EndCause
-    control_ticks: int
+    control_ticks: Count
     """Control ticks walked."""
-    target_ticks: int
+    target_ticks: Count
     """Control ticks to walk for success."""
     peak_zmp_error_m: float
     peak_joint_velocity_rad_s: float
@@ -47,8 +58,10 @@ class EpisodeResult(msgspec.Struct, frozen=True, kw_only=True):
     """T_err-hat that T_err was compared with; None the first time and on failure."""
     reward: float
     """rwd of Table 2, or 0."""
-    subtask: int
+    subtask: Count
     """0-based place in the learning schedule."""
+    trajectory_sha256: str
+    """Hash of all that the walk measured."""
     schedule_complete: bool
     """The last subtask has been passed, now or before."""
 

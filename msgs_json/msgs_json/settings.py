@@ -84,6 +84,8 @@ def from_mapping(
     Raises:
         SettingsError: unknown key, wrong type, non-finite or out-of-range value.
     """
+    if not isinstance(values, Mapping):
+        raise SettingsError("settings", values, "must be a section of keys")
     fields = {f.name: f for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
     hints = get_type_hints(cls)
     arguments: dict[str, Any] = (
@@ -139,9 +141,12 @@ def check_ranges(settings: Any) -> None:
     Raises:
         SettingsError: naming the key, the value and what is allowed.
     """
+    hints = get_type_hints(type(settings))
     for f in dataclasses.fields(settings):
         if "unit" in f.metadata:
-            _check_range(f.name, getattr(settings, f.name), f)
+            value = getattr(settings, f.name)
+            _converted(f.name, value, hints[f.name], f)
+            _check_range(f.name, value, f)
 
 
 def _converted(key: str, value: Any, kind: Any, field: dataclasses.Field[Any]) -> Any:
@@ -153,7 +158,10 @@ def _converted(key: str, value: Any, kind: Any, field: dataclasses.Field[Any]) -
     if isinstance(value, bool) != (kind is bool):
         raise SettingsError(key, value, f"must be {_NOUNS[kind]}")
     if kind is float and isinstance(value, int):
-        return float(value)
+        try:
+            return float(value)
+        except OverflowError:
+            raise SettingsError(key, value, "is too large a number") from None
     if not isinstance(value, kind):
         raise SettingsError(key, value, f"must be {_NOUNS[kind]}{_hint(value)}")
     return value

@@ -25,10 +25,10 @@ from msgs_json.segment import WaistSegment
 from msgs_json.timing import (
     CONTROL_PERIOD_S,
     CONTROL_PERIOD_US,
-    LEARNING_PERIOD_S,
     microseconds,
+    seconds,
 )
-from sim_node.contact import FloorContact, floor_contact
+from sim_node.contact import NO_CONTACT, FloorContact, floor_contact
 from sim_node.control_tick import ControlTick, sum_up
 from sim_node.disturbance import Disturbance, draw_disturbance
 from sim_node.errors import SnapshotError
@@ -45,7 +45,7 @@ _IK_END_CAUSE = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BipedSnapshot:
     """A walk in its middle; valid for the biped that made it, until released."""
 
@@ -53,6 +53,26 @@ class BipedSnapshot:
     watch: _Watch
     disturbance: Disturbance
     rng_state: dict[str, Any]
+    references: _References
+
+
+@dataclass(frozen=True)
+class _References:
+    """A segment with the joint motion that follows it."""
+
+    segment: WaistSegment
+    rows: int
+    """Rows that the legs can reach, from the first on."""
+    q: list[list[float]]
+    """(rows, 12) [rad]"""
+    dq: list[list[float]]
+    """(rows - 1, 12) from each row to the next [rad/s]"""
+    zmp: list[list[float]]
+    """(rows, 2) [m]"""
+
+
+def _standing_references(start: WaistSegment) -> _References:
+    return _References(segment=start, rows=1, q=[], dq=[], zmp=[])
 
 
 @dataclass
@@ -60,8 +80,9 @@ class _Watch:
     """What the robot remembers from tick to tick besides the physics."""
 
     episode: int = 0
+    clock_ticks: int = 0
     control_tick: int = 0
-    zmp: tuple[float, float] = (0.0, 0.0)
+    contact: FloorContact = NO_CONTACT
     waist_velocity: tuple[float, float] = (0.0, 0.0)
     unloaded_ticks: int = 0
     saturated_ticks: int = 0
@@ -83,6 +104,7 @@ class SimulatedBiped:
         start: WaistSegment,
         rng: np.random.Generator,
         on_tick: Callable[[ControlTick], None] | None = None,
+        name: str = "in-process",
     ) -> None:
         """Build the world and let the robot settle in its starting pose.
 
@@ -91,7 +113,9 @@ class SimulatedBiped:
             start: a segment whose row 0 is the pose in which walks start.
             rng: source of all disturbances.
             on_tick: called after every control tick.
+            name: of this simulation's run, for observations.
         """
+        self._name = name
         self.settings = settings
         self.on_tick = on_tick
         self._rng = rng
@@ -105,7 +129,10 @@ class SimulatedBiped:
         self._unloaded_limit = _ticks(limits.unloaded_feet_s)
         self._saturation_limit = _ticks(limits.torque_saturation_s)
         self._torque_marks = [_SATURATED * limit for limit in self.world.torque_limits]
-        self._q_reference = np.empty((0, len(JOINT_NAMES)))
+        self._references = _standing_references(start)
+        self._snapshots: set[BipedSnapshot] = set()
+        # Measured since the last observation.
+        self._ticks: list[ControlTick] = []
         self._disturbance = draw_disturbance(
             replace(settings.disturbances, push_force_n=0.0, mass_error=0.0),
             self.world.n_links,
@@ -118,7 +145,10 @@ class SimulatedBiped:
     # -- a walk --------------------------------------------------------------------
 
     def begin_walk(self, episode: int) -> Observation:
-        """Put the robot back on its feet and return what it observes there."""
+        """Put the robot back on its feet and return what it observes there.
+
+        The clock goes on by one tick, so that no two observations share a time.
+        """
         self.world.check_open()
         self.world.load(self._standing)
         disturbances = self.settings.disturbances
@@ -131,10 +161,13 @@ class SimulatedBiped:
         _, velocity = self.world.waist()
         self._watch = _Watch(
             episode=episode,
-            zmp=(contact.zmp_x_m, contact.zmp_y_m),
+            clock_ticks=self._watch.clock_ticks + 1,
+            contact=contact,
             waist_velocity=(float(velocity[0]), float(velocity[1])),
         )
-        return self._observe(self._start, 0, [], contact)
+        self._references = _standing_references(self._start)
+        self._ticks.clear()
+        return self.observe()
 
     def execute(self, segment: WaistSegment) -> Observation:
         """Follow a segment to its end, or to the tick where the walk fails.
@@ -142,38 +175,144 @@ class SimulatedBiped:
         Raises:
             ValueError: the segment does not continue the walk, or the walk is over.
         """
-        watch = self._watch
-        if watch.end_cause is not None:
-            raise ValueError(f"the walk is over: {watch.end_cause}")
-        if segment.first_tick != watch.control_tick:
+        self._check_walking()
+        if segment.first_tick != self._watch.control_tick:
             raise ValueError(
                 f"segment starts at tick {segment.first_tick}, "
+                f"the robot is at tick {self._watch.control_tick}"
+            )
+        self.follow(segment, rows=segment.n_ticks + 1)
+        end = segment.first_tick + segment.n_ticks
+        while self._watch.control_tick < end and self._watch.end_cause is None:
+            self.advance()
+        return self.observe()
+
+    def follow(self, segment: WaistSegment, rows: int | None = None) -> None:
+        """Take over the references of a segment, from the present tick on.
+
+        A segment that the legs cannot follow within its own ticks ends the walk here,
+        before it is begun; look-ahead is followed as far as they can.
+
+        Args:
+            segment: begins at or before the present control tick.
+            rows: how many of its rows to use; all by default.
+
+        Raises:
+            ValueError: the segment is not about the present tick, has a number that is
+                not finite, or the walk is over.
+        """
+        self._check_walking()
+        watch = self._watch
+        rows = len(segment.waist) if rows is None else rows
+        if not 0 <= watch.control_tick - segment.first_tick < rows - 1:
+            raise ValueError(
+                f"segment of ticks {segment.first_tick} to "
+                f"{segment.first_tick + rows - 1}, "
                 f"the robot is at tick {watch.control_tick}"
             )
-        rows = segment.n_ticks + 1
-        self._q_reference = np.empty((rows, len(JOINT_NAMES)))
-        status, tick, _ = kinematics.solve_legs(
+        if segment.n_ticks < 1 or not np.isfinite(segment.zmp_reference[:rows]).all():
+            raise ValueError("segment without a tick, or with a number not finite")
+        q_reference = np.empty((rows, len(JOINT_NAMES)))
+        status, row, _ = kinematics.solve_legs(
             segment.waist[:rows],
             segment.left_foot[:rows],
             segment.right_foot[:rows],
-            self._q_reference,
+            q_reference,
         )
-        if status != kinematics.SOLVED:
-            if status not in _IK_END_CAUSE:
-                raise ValueError(f"segment has a number that is not finite, row {tick}")
+        if status == kinematics.NOT_FINITE:
+            raise ValueError(f"segment has a number that is not finite, row {row}")
+        solved_rows = rows if status == kinematics.SOLVED else row
+        if solved_rows <= segment.n_ticks:
             watch.end_cause = _IK_END_CAUSE[status]
-            return self._observe(segment, 0, [], None)
-        positions = self._q_reference.tolist()
-        velocities = (np.diff(self._q_reference, axis=0) / CONTROL_PERIOD_S).tolist()
-        references = segment.zmp_reference[:rows].tolist()
-        ticks: list[ControlTick] = []
-        for i in range(segment.n_ticks):
-            self._push()
-            self.world.step(positions[i], velocities[i])
-            ticks.append(self._read(positions[i + 1], references[i + 1]))
-            if watch.end_cause is not None:
-                break
-        return self._observe(segment, len(ticks), ticks, ticks[-1].contact)
+            return
+        self._references = _References(
+            segment=segment,
+            rows=solved_rows,
+            q=q_reference.tolist(),
+            dq=(np.diff(q_reference, axis=0) / CONTROL_PERIOD_S).tolist(),
+            zmp=segment.zmp_reference[:rows].tolist(),
+        )
+
+    def advance(self) -> ControlTick:
+        """Walk one control tick along the references.
+
+        Raises:
+            ValueError: the walk is over, or the references are used up.
+        """
+        self._check_walking()
+        watch = self._watch
+        if self.ticks_ahead < 1:
+            raise ValueError(f"no reference for tick {watch.control_tick + 1}")
+        self._push()
+        references, row = self._references, self._row()
+        dq_reference = references.dq[row]
+        self.world.step(references.q[row], dq_reference)
+        tick = self._read(references.q[row + 1], dq_reference, references.zmp[row + 1])
+        self._ticks.append(tick)
+        if self.on_tick is not None:
+            self.on_tick(tick)
+        return tick
+
+    def observe(self) -> Observation:
+        """Sum up the control ticks since the last observation, as seen from the last.
+
+        Numbers that the physics left undefined are reported as zero, with the end
+        cause `physics_nan`.
+        """
+        watch, segment = self._watch, self._references.segment
+        row = self._row()
+        waist, velocity = self.world.waist()
+        right_support = bool(segment.right_support[row])
+        support_foot = (segment.right_foot if right_support else segment.left_foot)[row]
+        zmp_error = np.subtract(watch.contact[:2], segment.zmp_reference[row])
+        if not np.isfinite(waist).all():
+            watch.end_cause = EndCause.PHYSICS_NAN
+        # Over the time since the last observation; the walk's last one is shorter.
+        period_s = seconds(max(1, len(self._ticks)))
+        acceleration = np.subtract(velocity[:2], watch.waist_velocity) / period_s
+        watch.waist_velocity = (float(velocity[0]), float(velocity[1]))
+        waist_in_support_foot = waist[:2] - support_foot[:2]
+        # Drawn also where its size is zero, so that a size changes no other draw.
+        noise = self._rng.standard_normal((3, 2))
+        sizes = self.settings.disturbances
+        waist_in_support_foot += sizes.position_noise_m * noise[0]
+        zmp_error += sizes.zmp_noise_m * noise[1]
+        acceleration += sizes.acceleration_noise_m_s2 * noise[2]
+        sums = sum_up(self._ticks, watch.trajectory)
+        self._ticks.clear()
+        return Observation(
+            simulation=self._name,
+            episode=watch.episode,
+            clock_ticks=watch.clock_ticks,
+            control_tick=watch.control_tick,
+            phase=self._phase(),
+            waist_in_support_foot_m=_pair(waist_in_support_foot),
+            zmp_error_m=_pair(zmp_error),
+            waist_acceleration_m_s2=_pair(acceleration),
+            **sums._asdict(),
+            trajectory_sha256=self.trajectory_sha256,
+            end_cause=watch.end_cause,
+        )
+
+    def end(self, cause: EndCause) -> None:
+        """End the walk from outside; the clock goes on by one tick."""
+        self._watch.end_cause = cause
+        self._watch.clock_ticks += 1
+
+    @property
+    def ticks_ahead(self) -> int:
+        """Control ticks for which there are references."""
+        return self._references.rows - 1 - self._row()
+
+    @property
+    def end_cause(self) -> EndCause | None:
+        """Why the walk has ended, if it has."""
+        return self._watch.end_cause
+
+    @property
+    def clock_ticks(self) -> int:
+        """Control ticks of the simulation's clock, over all walks."""
+        return self._watch.clock_ticks
 
     @property
     def control_tick(self) -> int:
@@ -190,28 +329,40 @@ class SimulatedBiped:
     def snapshot(self) -> BipedSnapshot:
         """Keep the walk as it stands, so that `restore` continues it bit for bit."""
         self.world.check_open()
-        return BipedSnapshot(
+        snapshot = BipedSnapshot(
             world_state=self.world.save(),
             watch=self._watch.copy(),
             disturbance=self._disturbance,
             rng_state=copy.deepcopy(dict(self._rng.bit_generator.state)),
+            references=self._references,
         )
+        self._snapshots.add(snapshot)
+        return snapshot
 
     def restore(self, snapshot: BipedSnapshot) -> None:
-        """Go back to a snapshot of this biped."""
-        self.world.check_open()
+        """Go back to a snapshot of this biped.
+
+        Raises:
+            SnapshotError: it is another biped's, or was released.
+        """
+        self._check_own(snapshot)
         self.world.load(snapshot.world_state)
         self._watch = snapshot.watch.copy()
         self._disturbance = snapshot.disturbance
         if self.settings.disturbances.mass_error > 0.0:
             self.world.set_mass_factors(snapshot.disturbance.mass_factors)
         self._rng.bit_generator.state = snapshot.rng_state
+        self._references = snapshot.references
+        self._ticks.clear()
 
     def release(self, snapshot: BipedSnapshot) -> None:
-        """Free a snapshot that is no longer needed."""
-        self.world.check_open()
-        if snapshot.world_state == self._standing:
-            raise SnapshotError("the standing robot is needed for every reset")
+        """Free a snapshot that is no longer needed.
+
+        Raises:
+            SnapshotError: it is another biped's, or was released before.
+        """
+        self._check_own(snapshot)
+        self._snapshots.remove(snapshot)
         self.world.release(snapshot.world_state)
 
     def close(self) -> None:
@@ -220,11 +371,23 @@ class SimulatedBiped:
 
     # -- inner steps ---------------------------------------------------------------
 
+    def _check_own(self, snapshot: BipedSnapshot) -> None:
+        self.world.check_open()
+        # The engine numbers states per world and uses numbers again.
+        if snapshot not in self._snapshots:
+            raise SnapshotError(
+                f"snapshot {snapshot.world_state} is not kept by this robot's world"
+            )
+
+    def _check_walking(self) -> None:
+        self.world.check_open()
+        if self._watch.end_cause is not None:
+            raise ValueError(f"the walk is over: {self._watch.end_cause}")
+
     def _settle(self) -> None:
         pose = (self._start.waist[:1], self._start.left_foot[:1], self._start.right_foot[:1])  # fmt: skip  # noqa: E501
         q = kinematics.leg_joint_positions(*pose)[0]
         self.world.place(pose[0][0], q)
-        self._q_reference = np.array([q])
         still = [0.0] * len(q)
         for _ in range(_SETTLING_TICKS):
             self.world.step(q.tolist(), still)
@@ -235,14 +398,20 @@ class SimulatedBiped:
             self.world.push(push.push_force_n)
 
     def _read(
-        self, joint_reference: list[float], zmp_reference: list[float]
+        self,
+        joint_reference: list[float],
+        joint_velocity_reference: list[float],
+        zmp_reference: list[float],
     ) -> ControlTick:
         """Read the sensors after a control tick and watch the limits."""
         watch = self._watch
+        watch.clock_ticks += 1
         watch.control_tick += 1
         position, velocity, torque = self.world.joint_states()
-        contact = floor_contact(self.world.contacts(), self.world.left_sole, watch.zmp)
-        watch.zmp = (contact.zmp_x_m, contact.zmp_y_m)
+        contact = floor_contact(
+            self.world.contacts(), self.world.left_sole, watch.contact[:2]
+        )
+        watch.contact = contact
         zmp_error = math.hypot(
             contact.zmp_x_m - zmp_reference[0], contact.zmp_y_m - zmp_reference[1]
         )
@@ -265,64 +434,34 @@ class SimulatedBiped:
             watch.end_cause = EndCause.TORQUE_SATURATION
         elif watch.unloaded_ticks >= self._unloaded_limit:
             watch.end_cause = EndCause.FEET_UNLOADED
-        tick = ControlTick(
+        return ControlTick(
+            watch.clock_ticks,
             watch.control_tick,
             joint_reference,
+            joint_velocity_reference,
             position,
             velocity,
             torque,
             contact,
+            zmp_reference,
             zmp_error,
+            self._phase(),
         )
-        if self.on_tick is not None:
-            self.on_tick(tick)
-        return tick
 
-    def _observe(
-        self,
-        segment: WaistSegment,
-        row: int,
-        ticks: list[ControlTick],
-        contact: FloorContact | None,
-    ) -> Observation:
-        """Sum up a learning tick, seen from its last control tick (row of segment)."""
-        watch = self._watch
-        waist, velocity = self.world.waist()
-        right_support = bool(segment.right_support[row])
-        support_foot = (segment.right_foot if right_support else segment.left_foot)[row]
-        zmp_error = np.subtract(watch.zmp, segment.zmp_reference[row])
-        acceleration = (
-            np.subtract(velocity[:2], watch.waist_velocity) / LEARNING_PERIOD_S
-        )
-        watch.waist_velocity = (float(velocity[0]), float(velocity[1]))
-        waist_in_support_foot = waist[:2] - support_foot[:2]
-        noise = self.settings.disturbances
-        if noise.position_noise_m > 0.0:
-            waist_in_support_foot += noise.position_noise_m * self._rng.standard_normal(2)  # fmt: skip  # noqa: E501
-        if noise.zmp_noise_m > 0.0:
-            zmp_error += noise.zmp_noise_m * self._rng.standard_normal(2)
-        if noise.acceleration_noise_m_s2 > 0.0:
-            acceleration += noise.acceleration_noise_m_s2 * self._rng.standard_normal(2)
-        sums = sum_up(ticks, self._q_reference, watch.trajectory)
-        left = contact is not None and contact.left_load_n > 0.0
-        right = contact is not None and contact.right_load_n > 0.0
-        return Observation(
-            episode=watch.episode,
-            control_tick=watch.control_tick,
-            phase=PhaseFlags(
-                planned_right_support=right_support,
-                planned_double_support=bool(segment.double_support[row]),
-                measured_right_support=right
-                and contact is not None
-                and contact.right_load_n > contact.left_load_n,
-                measured_double_support=left and right,
-                step_index=int(segment.step_index[row]),
-            ),
-            waist_in_support_foot_m=_pair(waist_in_support_foot),
-            zmp_error_m=_pair(zmp_error),
-            waist_acceleration_m_s2=_pair(acceleration),
-            **sums._asdict(),
-            end_cause=watch.end_cause,
+    def _row(self) -> int:
+        """Return the row of the references at which the robot is."""
+        return self._watch.control_tick - self._references.segment.first_tick
+
+    def _phase(self) -> PhaseFlags:
+        row, contact = self._row(), self._watch.contact
+        segment = self._references.segment
+        return PhaseFlags(
+            planned_right_support=bool(segment.right_support[row]),
+            planned_double_support=bool(segment.double_support[row]),
+            measured_right_support=contact.right_load_n > contact.left_load_n,
+            measured_double_support=contact.left_load_n > 0.0
+            and contact.right_load_n > 0.0,
+            step_index=int(segment.step_index[row]),
         )
 
 
@@ -331,4 +470,6 @@ def _ticks(duration_s: float) -> int:
 
 
 def _pair(values: NDArray[np.float64]) -> tuple[float, float]:
-    return float(values[0]), float(values[1])
+    """Return two plain numbers; zeros where the physics gave none."""
+    x, y = float(values[0]), float(values[1])
+    return (x, y) if math.isfinite(x + y) else (0.0, 0.0)

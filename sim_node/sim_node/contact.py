@@ -18,6 +18,9 @@ class FloorContact(NamedTuple):
     penetration_m: float
 
 
+NO_CONTACT = FloorContact(0.0, 0.0, 0.0, 0.0, 0.0)
+
+
 def floor_contact(
     points: Any, left_sole: int, held: tuple[float, float]
 ) -> FloorContact:

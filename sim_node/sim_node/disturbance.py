@@ -33,7 +33,7 @@ def draw_disturbance(
     direction = rng.uniform(0.0, 2.0 * math.pi)
     errors = rng.standard_normal(n_links)
     start = microseconds(settings.push_time_s) // CONTROL_PERIOD_US
-    ticks = microseconds(settings.push_duration_s) // CONTROL_PERIOD_US
+    ticks = max(1, microseconds(settings.push_duration_s) // CONTROL_PERIOD_US)
     force = settings.push_force_n
     # A link can be light, but never without mass.
     factors = np.maximum(1.0 + settings.mass_error * errors, 0.1)

@@ -33,6 +33,7 @@ def engine_chatter_dropped() -> Iterator[None]:
 
 
 def _flush() -> None:
-    sys.stdout.flush()
-    sys.stderr.flush()
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:  # closed by whoever started the process
+            stream.flush()
     ctypes.CDLL(None).fflush(None)

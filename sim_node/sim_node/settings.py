@@ -79,3 +79,33 @@ class SimSettings:
 
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
+
+
+@dataclass(frozen=True)
+class SimNodeSettings:
+    """All of the simulation node."""
+
+    sim: SimSettings = section(SimSettings)
+    seed: int = setting(0, "", "of the disturbances", lower=0)
+    pace: str = setting(
+        "lockstep",
+        "",
+        "lockstep: as fast as all can; realtime: 500 Hz, waiting for nobody",
+        choices=("lockstep", "realtime"),
+    )
+    realtime_factor: float = setting(
+        1.0, "", "simulated seconds per second, in real time", above=0.0, upper=20.0
+    )
+    segment_rows: int = setting(
+        60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
+    )
+    publish_every_ticks: int = setting(
+        1, "control ticks", "1 publishes at 500 Hz, 10 at 50 Hz", lower=1, upper=1000
+    )
+    timeout_s: float = setting(
+        5.0, "s", "silence of a peer after which a walk is given up", above=0.0
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)

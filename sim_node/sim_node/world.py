@@ -218,7 +218,8 @@ class World:
     def load(self, handle: int) -> None:
         """Go back to a kept state, bit for bit."""
         try:
-            pybullet.restoreState(stateId=handle, physicsClientId=self.client)
+            with engine_chatter_dropped():
+                pybullet.restoreState(stateId=handle, physicsClientId=self.client)
         except pybullet.error as error:
             raise SnapshotError(f"state {handle} is not kept by this world") from error
 

@@ -37,12 +37,11 @@ class Record:
 
 def record(run: TrainingRun) -> Record:
     """Take the record of a run."""
-    tally = {key: value for key, value in vars(run.tally).items() if key != "cpu_s"}
     return Record(
         memory_sha256=run.learner.memory_sha256(),
         trajectory_sha256=run.tally.trajectories_sha256,
         log_sha256=arrays_sha256(run.log.arrays()),
-        tally=tally,
+        tally=dict(vars(run.tally)),
         progress=run.learner.progress(),
     )
 

@@ -37,6 +37,11 @@ MISFITS: dict[str, tuple[Change, str]] = {
     ),
     "no seed": (lambda header, _: header.pop("seed"), "seed"),
     "no progress": (lambda header, _: header.pop("progress"), "progress"),
+    "no word on a trial": (lambda header, _: header.pop("trial_due"), "trial_due"),
+    "computing time that is no number": (
+        lambda header, _: header.update(cpu_s="long"),
+        "could not convert",
+    ),
     "no tally": (lambda header, _: header.pop("tally"), "tally"),
     "a tally of something else": (
         lambda header, _: header["tally"].update(falls=3),

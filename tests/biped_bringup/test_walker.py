@@ -35,40 +35,41 @@ def recorded() -> Iterator[RecordedWalker]:
 
 
 def test_a_walk_ends_at_its_target(recorded):
-    result = recorded.walker.walk(recorded.static(200), episode=1)
+    result = recorded.walker.walk(recorded.static(200))
     assert (result.end_cause, result.control_ticks) == (EndCause.COMPLETED, 200)
 
 
 def test_every_control_tick_is_told(recorded):
-    recorded.walker.walk(recorded.static(200), episode=1)
+    recorded.walker.walk(recorded.static(200))
     assert [tick.control_tick for tick in recorded.ticks] == list(range(1, 201))
 
 
 def test_the_whole_walk_is_walked_to_its_last_tick(recorded):
     ticks = recorded.walker.walk_ticks
     assert ticks % TICKS_PER_LEARNING_TICK, "the last segment should be a short one"
-    result = recorded.walker.walk(recorded.static(ticks), episode=1)
+    result = recorded.walker.walk(recorded.static(ticks))
     assert len(recorded.ticks) == result.control_ticks == ticks
 
 
-def test_a_walk_carries_the_number_of_its_episode(recorded):
-    assert recorded.walker.walk(recorded.static(100), episode=7).episode == 7
+def test_walks_are_numbered_from_one(recorded):
+    numbers = [recorded.walker.walk(recorded.static(20)).episode for _ in range(3)]
+    assert numbers == [1, 2, 3]
 
 
 def test_a_second_walk_is_as_if_it_were_the_first(recorded):
     walks = []
     for _ in range(2):
-        recorded.walker.walk(recorded.static(600), episode=1)
+        recorded.walker.walk(recorded.static(600))
         walks.append(recorded.walker.biped.trajectory_sha256)
     assert walks[0] == walks[1]
 
 
 def test_a_walk_after_a_fall_is_as_if_it_were_the_first(recorded):
-    recorded.walker.walk(recorded.static(600), episode=1)
+    recorded.walker.walk(recorded.static(600))
     first = recorded.walker.biped.trajectory_sha256
     leaning = FrozenWalk(SETTINGS.learner, 10_000, lambda _: np.array([0.2, 0.2]))
-    assert not recorded.walker.walk(leaning, episode=2).completed
-    recorded.walker.walk(recorded.static(600), episode=3)
+    assert not recorded.walker.walk(leaning).completed
+    recorded.walker.walk(recorded.static(600))
     assert recorded.walker.biped.trajectory_sha256 == first
 
 
@@ -76,9 +77,9 @@ def test_what_the_responder_answers_moves_the_robot(recorded):
     def lean(_):
         return np.array([0.0, 0.01])
 
-    recorded.walker.walk(FrozenWalk(SETTINGS.learner, 200, lean), episode=1)
+    recorded.walker.walk(FrozenWalk(SETTINGS.learner, 200, lean))
     leaning = recorded.walker.biped.trajectory_sha256
-    recorded.walker.walk(recorded.static(200), episode=1)
+    recorded.walker.walk(recorded.static(200))
     assert recorded.walker.biped.trajectory_sha256 != leaning
 
 
@@ -89,7 +90,7 @@ def test_the_responder_is_asked_once_per_learning_tick(recorded):
         asked.append(observation.control_tick)
         return NO_CORRECTION_M
 
-    recorded.walker.walk(FrozenWalk(SETTINGS.learner, 200, decide), episode=1)
+    recorded.walker.walk(FrozenWalk(SETTINGS.learner, 200, decide))
     assert asked == list(range(0, 200, TICKS_PER_LEARNING_TICK))
 
 

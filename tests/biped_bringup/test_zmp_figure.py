@@ -21,7 +21,7 @@ def drawn(tmp_path: Path):
 
     def draw(responder: FrozenWalk | None, name: str = "zmp.png") -> Path:
         if responder is not None:
-            walker.walk(responder, episode=1)
+            walker.walk(responder)
         picture = tmp_path / name
         draw_zmp(trace, walker.reference.plan, SETTINGS.sim.limits, picture)
         return picture

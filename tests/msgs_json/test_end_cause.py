@@ -17,6 +17,8 @@ def test_these_are_all_the_words():
         "feet_unloaded",
         "foot_through_floor",
         "physics_nan",
+        "peer_silent",
+        "reset",
     ]
 
 

@@ -22,6 +22,7 @@ costs = st.builds(
 results = st.builds(
     EpisodeResult,
     episode=counts,
+    learning=st.booleans(),
     end_cause=st.sampled_from(EndCause),
     control_ticks=counts,
     target_ticks=counts,
@@ -31,6 +32,7 @@ results = st.builds(
     t_err_estimate=st.none() | numbers,
     reward=numbers,
     subtask=counts,
+    trajectory_sha256=st.text(),
     schedule_complete=st.booleans(),
 )
 
@@ -51,6 +53,7 @@ def result_of(end_cause: EndCause, cost: CostTerms) -> EpisodeResult:
     """Return a result in which only the end and the cost matter."""
     return EpisodeResult(
         episode=1,
+        learning=True,
         end_cause=end_cause,
         control_ticks=940,
         target_ticks=940,
@@ -60,6 +63,7 @@ def result_of(end_cause: EndCause, cost: CostTerms) -> EpisodeResult:
         t_err_estimate=2.1,
         reward=10.0,
         subtask=0,
+        trajectory_sha256="6f1c",
         schedule_complete=False,
     )
 

@@ -23,7 +23,9 @@ phases = st.builds(
 )
 observations = st.builds(
     Observation,
+    simulation=st.text(),
     episode=counts,
+    clock_ticks=counts,
     control_tick=counts,
     phase=phases,
     waist_in_support_foot_m=pairs,
@@ -36,6 +38,7 @@ observations = st.builds(
     torque_integral_n2m2_s=numbers,
     mean_joint_error_rad=numbers,
     mean_joint_velocity_error_rad_s=numbers,
+    trajectory_sha256=st.text(),
     end_cause=st.none() | st.sampled_from(EndCause),
 )
 
@@ -43,7 +46,9 @@ observations = st.builds(
 @pytest.fixture
 def observation() -> Observation:
     return Observation(
+        simulation="a1",
         episode=3,
+        clock_ticks=1040,
         control_tick=40,
         phase=PhaseFlags(
             planned_right_support=True,
@@ -62,6 +67,7 @@ def observation() -> Observation:
         torque_integral_n2m2_s=20.0,
         mean_joint_error_rad=1e-4,
         mean_joint_velocity_error_rad_s=1e-3,
+        trajectory_sha256="6f1c",
     )
 
 

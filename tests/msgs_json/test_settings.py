@@ -248,6 +248,15 @@ def test_settings_come_back_from_yaml():
         {"teeth": 41},
         {"mode": "backwards"},
         {"stops_rad": (0.0, -4.0)},
+        {"gain": "0.5"},
+        {"gain": True},
+        {"gain": None},
+        {"teeth": 12.0},
+        {"teeth": True},
+        {"braked": 1},
+        {"mode": 3},
+        {"stops_rad": 1.0},
+        {"stops_rad": (0.0, "far")},
     ],
     ids=str,
 )
@@ -294,3 +303,28 @@ def test_an_overlay_leaves_its_base_alone():
 )
 def test_a_section_and_a_value_replace_each_other(base, changes):
     assert overlay(base, changes) == changes
+
+
+@pytest.mark.parametrize("values", [None, 3, "fast", [1, 2]])
+def test_settings_must_be_a_mapping(values):
+    assert complaint(Cell, values).allowed == "must be a section of keys"
+
+
+def test_a_whole_number_serves_as_a_number_in_code_too():
+    assert Motor(gain=1, stops_rad=(-1, 1)).gain == 1
+
+
+@pytest.mark.parametrize("number", [10**400, -(10**400)], ids=["positive", "negative"])
+@pytest.mark.parametrize("key", ["gain", "sag_m", "heat_k"])
+def test_a_whole_number_too_large_for_a_number_is_refused(key, number):
+    assert complaint(Motor, {key: number}).allowed == "is too large a number"
+
+
+def test_a_whole_number_too_large_is_refused_in_a_list():
+    error = complaint(Motor, {"stops_rad": [0.0, 10**400]})
+    assert error.allowed == "is too large a number"
+
+
+def test_a_whole_number_too_large_is_refused_in_code_too():
+    with pytest.raises(SettingsError, match="is too large a number"):
+        Motor(gain=10**400)

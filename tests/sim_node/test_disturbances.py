@@ -253,3 +253,31 @@ def test_noise_comes_from_the_generator(new_walker, shaky_walk):
         new_walker(STURDY, NOISES, seed=seed).walk(shaky_walk[:5]) for seed in (3, 3, 4)
     )
     assert (same == again, same == other) == (True, False)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-9])
+def test_a_noise_changes_no_draw_of_another(new_walker, shaky_walk, size):
+    base = {"zmp_noise_m": 0.02}
+    plain, more = (
+        [each.zmp_error_m for each in walker.walk(shaky_walk[:5])]
+        for walker in (
+            new_walker(STURDY, base),
+            new_walker(STURDY, base | {"position_noise_m": size}),
+        )
+    )
+    assert plain == more
+
+
+def test_without_noise_as_many_numbers_are_drawn(new_walker, shaky_walk):
+    states = []
+    for noises in ({}, NOISES):
+        walker = new_walker(STURDY, noises)
+        walker.walk(shaky_walk[:5])
+        states.append(walker.rng.bit_generator.state)
+    assert states[0] == states[1]
+
+
+@pytest.mark.parametrize("duration_s", [1e-4, 0.0019, 0.002])
+def test_a_push_lasts_at_least_a_tick(duration_s):
+    push = draw(push_force_n=1.0, push_time_s=1.5, push_duration_s=duration_s)
+    assert push.push_to_tick - push.push_from_tick == 1

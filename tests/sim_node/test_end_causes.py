@@ -2,12 +2,19 @@
 
 import dataclasses
 
+import msgspec
 import numpy as np
 import pybullet
 import pytest
 
 from biped_description.joints import TORQUE_LIMIT
 from msgs_json.end_cause import EndCause
+from msgs_json.observation import Observation
+from msgs_json.wire import decode, encode
+from sim_node.biped import SimulatedBiped
+from sim_node.errors import WorldClosedError
+from trajectory_node.settings import CorrectionSettings, GaitSettings
+from trajectory_node.waist_reference import WaistReference
 
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
@@ -221,3 +228,188 @@ def test_a_walk_that_is_over_does_not_go_on(walker, static_walk):
 def test_the_cause_of_the_end_is_not_kept_for_the_next_walk(walker, static_walk):
     walker.walk(static_walk)
     assert walker.walk(static_walk[:1])[-1].end_cause is None
+
+
+# -- physics that is no number ---------------------------------------------------------
+
+
+def spoil(walker, what):
+    """Make the position or the velocity of base or joint no number."""
+    world = walker.robot.world
+    client = {"physicsClientId": world.client}
+    if what == "base_position":
+        bad = (np.nan, 0.0, 0.0)
+        pybullet.resetBasePositionAndOrientation(world.robot, bad, UPRIGHT, **client)
+    elif what == "base_velocity":
+        pybullet.resetBaseVelocity(world.robot, (np.nan, 0.0, 0.0), **client)
+    else:
+        joint = world.joints[3]
+        pybullet.resetJointState(world.robot, joint, 0.9, np.nan, **client)
+
+
+EVERY_SPOIL = pytest.mark.parametrize(
+    "what", ["base_position", "base_velocity", "joint_velocity"]
+)
+
+
+@EVERY_SPOIL
+def test_whatever_is_no_number_is_found(walker, static_walk, what):
+    walker.walk(static_walk[:1])
+    spoil(walker, what)
+    assert walker.go_on(static_walk[1:3])[-1].end_cause is EndCause.PHYSICS_NAN
+
+
+@EVERY_SPOIL
+def test_an_observation_holds_numbers_only(walker, static_walk, what):
+    walker.walk(static_walk[:1])
+    spoil(walker, what)
+    end = walker.go_on(static_walk[1:3])[-1]
+    numbers = [value for value in msgspec.structs.astuple(end) if value is not None]
+    found = [n for n in numbers if isinstance(n, (float, tuple))]
+    assert all(np.isfinite(each).all() for each in found)
+
+
+@EVERY_SPOIL
+def test_an_observation_without_numbers_goes_over_the_wire(walker, static_walk, what):
+    walker.walk(static_walk[:1])
+    spoil(walker, what)
+    end = walker.go_on(static_walk[1:3])[-1]
+    assert decode(Observation, encode(end)) == end
+
+
+# -- references taken over while walking on --------------------------------------------
+
+
+def advance(robot, ticks):
+    return [robot.advance() for _ in range(ticks)][-1]
+
+
+def test_control_ticks_one_by_one_make_the_same_walk(new_walker, shaky_walk):
+    whole, by_ticks = new_walker(), new_walker()
+    observed = whole.walk(shaky_walk[:20])
+    found = [by_ticks.robot.begin_walk(1)]
+    for segment in shaky_walk[:20]:
+        by_ticks.robot.follow(segment)
+        advance(by_ticks.robot, 10)
+        found.append(by_ticks.robot.observe())
+    assert found == observed
+
+
+def test_a_standing_robot_has_no_references(walker):
+    walker.robot.begin_walk(1)
+    assert walker.robot.ticks_ahead == 0
+    with pytest.raises(ValueError, match=r"^no reference for tick 1$"):
+        walker.robot.advance()
+
+
+def test_references_are_used_up_tick_by_tick(walker, static_walk):
+    walker.robot.begin_walk(1)
+    walker.robot.follow(static_walk[0])
+    left = [walker.robot.ticks_ahead]
+    for _ in range(10):
+        walker.robot.advance()
+        left.append(walker.robot.ticks_ahead)
+    assert left == list(range(10, -1, -1))
+
+
+def test_beyond_the_references_there_is_no_way(walker, static_walk):
+    walker.robot.begin_walk(1)
+    walker.robot.follow(static_walk[0])
+    advance(walker.robot, 10)
+    with pytest.raises(ValueError, match=r"^no reference for tick 11$"):
+        walker.robot.advance()
+
+
+def test_a_segment_that_comes_late_is_followed_from_the_present_tick(
+    sturdy_walker, static_walk
+):
+    ahead = WaistReference(GaitSettings(), CorrectionSettings(), 50)
+    first, second = (ahead.segment(np.zeros(2)) for _ in range(2))
+    sturdy_walker.robot.begin_walk(1)
+    sturdy_walker.robot.follow(first)
+    advance(sturdy_walker.robot, 14)
+    sturdy_walker.robot.follow(second)
+    assert sturdy_walker.robot.ticks_ahead == 55
+
+
+@pytest.mark.parametrize("index", [0, 2])
+def test_a_segment_that_is_not_about_the_present_tick_is_not_followed(
+    walker, static_walk, index
+):
+    walker.walk(static_walk[:1])
+    message = f"segment of ticks {10 * index} to {10 * index + 10}, the robot is at"
+    with pytest.raises(ValueError, match=message):
+        walker.robot.follow(static_walk[index])
+
+
+def test_look_ahead_is_followed_as_far_as_the_legs_can(walker, static_walk):
+    segment = dataclasses.replace(static_walk[0], n_ticks=5)
+    walker.robot.begin_walk(1)
+    walker.robot.follow(shift_waist(segment, (0.0, 0.0, 0.2), 8))
+    assert (walker.robot.ticks_ahead, walker.robot.end_cause) == (7, None)
+
+
+def test_a_segment_that_the_legs_cannot_follow_ends_the_walk_at_once(
+    walker, static_walk
+):
+    walker.robot.begin_walk(1)
+    walker.robot.follow(shift_waist(static_walk[0], (0.0, 0.0, 0.2), 10))
+    assert walker.robot.end_cause is EndCause.IK_UNREACHABLE
+
+
+# -- ends from outside -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("cause", [EndCause.PEER_SILENT, EndCause.RESET])
+def test_an_end_from_outside_is_observed(walker, static_walk, cause):
+    walker.walk(static_walk[:2])
+    walker.robot.end(cause)
+    end = walker.robot.observe()
+    assert (end.end_cause, end.control_tick) == (cause, 20)
+
+
+def test_an_end_from_outside_takes_a_tick_of_the_clock(walker, static_walk):
+    walker.walk(static_walk[:2])
+    before = walker.robot.clock_ticks
+    walker.robot.end(EndCause.RESET)
+    assert walker.robot.clock_ticks == before + 1
+
+
+def test_a_walk_ended_from_outside_does_not_go_on(walker, static_walk):
+    walker.walk(static_walk[:2])
+    walker.robot.end(EndCause.RESET)
+    with pytest.raises(ValueError, match=r"^the walk is over: reset$"):
+        walker.robot.execute(static_walk[2])
+
+
+# -- more misuse -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_zmp_reference_that_is_no_number_is_refused(walker, static_walk, bad):
+    rows = static_walk[3].zmp_reference.copy()
+    rows[4, 1] = bad
+    walker.walk(static_walk[:3])
+    with pytest.raises(ValueError, match="not finite"):
+        walker.robot.execute(dataclasses.replace(static_walk[3], zmp_reference=rows))
+
+
+@pytest.mark.parametrize("n_ticks", [0, -1])
+@pytest.mark.parametrize("way", [SimulatedBiped.execute, SimulatedBiped.follow])
+def test_a_segment_without_a_tick_is_refused(walker, static_walk, n_ticks, way):
+    walker.walk(static_walk[:3])
+    with pytest.raises(ValueError, match="segment"):
+        way(walker.robot, dataclasses.replace(static_walk[3], n_ticks=n_ticks))
+
+
+def test_a_closed_robot_does_not_walk(walker, static_walk):
+    walker.walk(static_walk[:3])
+    walker.robot.close()
+    with pytest.raises(WorldClosedError):
+        walker.robot.execute(static_walk[3])
+
+
+def test_a_closed_robot_begins_no_walk(walker):
+    walker.robot.close()
+    with pytest.raises(WorldClosedError):
+        walker.robot.begin_walk(1)

@@ -9,8 +9,11 @@ import pytest
 from biped_description.dimensions import BIPED
 from biped_description.joints import TORQUE_LIMIT
 from biped_description.kinematics import leg_joint_positions
+from msgs_json.observation import PhaseFlags
+from sim_node.biped import SimulatedBiped
 from sim_node.contact import FloorContact
 from sim_node.control_tick import ControlTick, TickSums, sum_up
+from sim_node.settings import SimSettings
 
 DT = 0.002  # control tick [s]
 STRETCH = 230  # learning ticks, past two single supports
@@ -284,7 +287,7 @@ def test_a_short_segment_counts_its_own_ticks_only(sturdy_walker, shaky_walk):
 
 
 def test_no_control_tick_sums_up_to_nothing():
-    assert sum_up([], np.empty((0, 12)), hashlib.sha256()) == TickSums()
+    assert sum_up([], hashlib.sha256()) == TickSums()
 
 
 @pytest.mark.parametrize(
@@ -301,10 +304,20 @@ def test_no_control_tick_sums_up_to_nothing():
 def test_the_hash_takes_in_every_measurement(change):
     still = 12 * (0.0,)
     contact = FloorContact(0.0, 0.0, 140.0, 140.0, 0.0)
-    tick = ControlTick(1, list(still), still, still, still, contact, 0.0)
+    phase = PhaseFlags(
+        planned_right_support=False,
+        planned_double_support=True,
+        measured_right_support=False,
+        measured_double_support=True,
+        step_index=0,
+    )
+    aim = list(still)
+    tick = ControlTick(
+        1, 1, aim, aim, still, still, still, contact, [0.0, 0.0], 0.0, phase
+    )
     hashes = hashlib.sha256(), hashlib.sha256()
     for each, trajectory in zip((tick, tick._replace(**change)), hashes, strict=True):
-        sum_up([each], np.zeros((2, 12)), trajectory)
+        sum_up([each], trajectory)
     assert hashes[0].digest() != hashes[1].digest()
 
 
@@ -314,3 +327,99 @@ def test_an_undisturbed_walk_stays_clear_of_the_torque_limits(
     sturdy_walker.walk(static_walk[:300])
     share = np.abs(sturdy_walker.joints[2]).max(axis=0) / TORQUE_LIMIT
     assert share.max() < 0.9
+
+
+# -- clock, names and hashes -----------------------------------------------------------
+
+
+def test_no_two_observations_have_the_same_time(walker, static_walk):
+    times = [
+        observation.clock_ticks
+        for _ in range(3)
+        for observation in walker.walk(static_walk[:3])
+    ]
+    assert times == sorted(set(times))
+
+
+def test_the_clock_goes_on_by_the_ticks_walked_and_one_per_walk(walker, static_walk):
+    times = [o.clock_ticks for _ in range(2) for o in walker.walk(static_walk[:2])]
+    assert np.diff(times).tolist() == [10, 10, 1, 10, 10]
+
+
+def test_control_ticks_carry_the_time_of_the_clock(walker, static_walk):
+    begun = walker.walk(static_walk[:2])[0].clock_ticks
+    times = [tick.clock_ticks for tick in walker.ticks]
+    assert times == list(range(begun + 1, begun + 21))
+
+
+def test_an_observation_has_the_time_of_its_last_control_tick(walked):
+    for _, ticks, observation in walked:
+        assert observation.clock_ticks == ticks[-1].clock_ticks
+
+
+def test_an_observation_names_its_simulation(static_walk):
+    robot = SimulatedBiped(
+        SimSettings(), static_walk[0], np.random.default_rng(0), name="this one"
+    )
+    named = robot.begin_walk(1).simulation
+    robot.close()
+    assert named == "this one"
+
+
+def test_an_observation_has_the_hash_of_the_walk_so_far(walker, static_walk):
+    walker.walk([])
+    for segment in static_walk[:3]:
+        (observation,) = walker.go_on([segment])
+        assert observation.trajectory_sha256 == walker.robot.trajectory_sha256
+
+
+# -- control ticks as they are told ----------------------------------------------------
+
+
+def test_a_control_tick_tells_the_joint_velocity_asked_for(walked):
+    for segment, ticks, _ in walked:
+        expected = np.diff(joint_references(segment), axis=0) / DT
+        found = [tick.joint_velocity_reference for tick in ticks]
+        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
+
+
+def test_a_control_tick_tells_the_zmp_asked_for(walked):
+    for segment, ticks, _ in walked:
+        found = [tick.zmp_reference for tick in ticks]
+        np.testing.assert_array_equal(found, segment.zmp_reference[1:])
+
+
+def test_a_control_tick_tells_its_planned_phase(walked):
+    for segment, ticks, _ in walked:
+        for row, tick in enumerate(ticks, 1):
+            assert (
+                tick.phase.planned_right_support,
+                tick.phase.planned_double_support,
+                tick.phase.step_index,
+            ) == (
+                segment.right_support[row],
+                segment.double_support[row],
+                segment.step_index[row],
+            )
+
+
+def test_the_last_control_tick_has_the_phase_of_the_observation(walked):
+    for _, ticks, observation in walked:
+        assert ticks[-1].phase == observation.phase
+
+
+# -- the time since the last observation -----------------------------------------------
+
+
+def test_a_short_segment_divides_the_acceleration_by_its_own_time(
+    sturdy_walker, shaky_walk
+):
+    sturdy_walker.walk(shaky_walk[:30])
+    _, before = sturdy_walker.robot.world.waist()
+    short = dataclasses.replace(shaky_walk[30], n_ticks=4)
+    observation = sturdy_walker.robot.execute(short)
+    _, after = sturdy_walker.robot.world.waist()
+    expected = (after - before)[:2] / (4 * DT)
+    np.testing.assert_allclose(
+        observation.waist_acceleration_m_s2, expected, rtol=0, atol=1e-12
+    )

@@ -6,7 +6,12 @@ import math
 import pytest
 
 from msgs_json.settings import SettingsError, from_mapping, to_mapping
-from sim_node.settings import DisturbanceSettings, LimitSettings, SimSettings
+from sim_node.settings import (
+    DisturbanceSettings,
+    LimitSettings,
+    SimNodeSettings,
+    SimSettings,
+)
 
 FIELDS = [
     (cls, field.name)
@@ -61,3 +66,30 @@ def test_every_setting_says_what_it_means(cls, name):
 def test_a_disturbance_beyond_reason_is_refused(name, value):
     with pytest.raises(SettingsError, match=f"^{name} = "):
         DisturbanceSettings(**{name: value})
+
+
+def test_settings_of_the_node_come_back_from_their_mapping():
+    settings = SimNodeSettings(timeout_s=2.0, publish_every_ticks=10)
+    assert from_mapping(SimNodeSettings, to_mapping(settings)) == settings
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("segment_rows", 10),
+        ("segment_rows", 60.0),
+        ("publish_every_ticks", 0),
+        ("publish_every_ticks", 1001),
+        ("timeout_s", 0.0),
+        ("timeout_s", math.inf),
+    ],
+)
+def test_settings_of_the_node_out_of_range_are_refused(name, value):
+    with pytest.raises(SettingsError, match=f"^{name} = "):
+        SimNodeSettings(**{name: value})
+
+
+@pytest.mark.parametrize("value", ["0.5", True, None])
+def test_a_setting_made_in_code_has_the_right_type(value):
+    with pytest.raises(SettingsError, match=r"^friction = .*: must be a number"):
+        DisturbanceSettings(friction=value)

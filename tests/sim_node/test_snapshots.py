@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from msgs_json.end_cause import EndCause
-from sim_node.errors import SnapshotError
+from sim_node.errors import SnapshotError, WorldClosedError
 
 STURDY = {"zmp_error_m": 1.0}
 DISTURBED = {
@@ -154,3 +154,68 @@ def test_a_snapshot_that_this_world_never_kept_is_refused(new_walker, shaky_walk
     snapshot = one.robot.snapshot()
     with pytest.raises(SnapshotError):
         other.robot.restore(snapshot)
+
+
+def test_a_snapshot_of_another_robot_with_the_same_number_is_refused(
+    new_walker, shaky_walk
+):
+    one, other = new_walker(STURDY), new_walker(STURDY)
+    for walker in (one, other):
+        walker.walk(shaky_walk[:7])
+    snapshot, own = one.robot.snapshot(), other.robot.snapshot()
+    assert snapshot.world_state == own.world_state
+    with pytest.raises(SnapshotError):
+        other.robot.restore(snapshot)
+
+
+def test_a_snapshot_of_another_robot_cannot_be_released(new_walker, shaky_walk):
+    one, other = new_walker(STURDY), new_walker(STURDY)
+    for walker in (one, other):
+        walker.walk(shaky_walk[:7])
+    snapshot, own = one.robot.snapshot(), other.robot.snapshot()
+    with pytest.raises(SnapshotError):
+        other.robot.release(snapshot)
+    other.robot.restore(own)
+
+
+def test_a_snapshot_cannot_be_released_twice(sturdy_walker, shaky_walk):
+    sturdy_walker.walk(shaky_walk[:7])
+    snapshot = sturdy_walker.robot.snapshot()
+    sturdy_walker.robot.release(snapshot)
+    with pytest.raises(SnapshotError):
+        sturdy_walker.robot.release(snapshot)
+
+
+def test_a_released_snapshot_does_not_stand_for_a_later_one(sturdy_walker, shaky_walk):
+    sturdy_walker.walk(shaky_walk[:7])
+    released = sturdy_walker.robot.snapshot()
+    sturdy_walker.robot.release(released)
+    sturdy_walker.go_on(shaky_walk[7:9])
+    later = sturdy_walker.robot.snapshot()
+    assert later.world_state == released.world_state, "the engine numbers anew"
+    with pytest.raises(SnapshotError):
+        sturdy_walker.robot.restore(released)
+
+
+@pytest.mark.parametrize("what", ["snapshot", "restore", "release"])
+def test_a_closed_robot_has_no_snapshots(sturdy_walker, what):
+    robot = sturdy_walker.robot
+    robot.begin_walk(1)
+    snapshot = robot.snapshot()
+    robot.close()
+    with pytest.raises(WorldClosedError):
+        getattr(robot, what)(*[snapshot] * (what != "snapshot"))
+
+
+def test_a_restored_walk_still_has_its_references(sturdy_walker, shaky_walk):
+    robot = sturdy_walker.robot
+    robot.begin_walk(1)
+    robot.follow(shaky_walk[0])
+    snapshot = robot.snapshot()
+    for _ in range(10):
+        robot.advance()
+    expected = robot.observe()
+    robot.restore(snapshot)
+    for _ in range(10):
+        robot.advance()
+    assert robot.observe() == expected

@@ -227,7 +227,7 @@ def test_nothing_moves_after_the_last_shift(gait):
 
 
 def test_the_robot_stands_for_a_while_after_the_end(plan):
-    assert len(plan.zmp_reference) == plan.ticks + 601
+    assert len(plan.zmp_reference) == plan.ticks + 610
 
 
 @pytest.mark.parametrize("blend", [quintic, swing_bump])

@@ -5,9 +5,15 @@ import dataclasses
 import pytest
 
 from msgs_json.settings import SettingsError, from_mapping, to_mapping
-from trajectory_node.settings import CorrectionSettings, GaitSettings
+from trajectory_node.settings import (
+    CorrectionSettings,
+    GaitSettings,
+    TrajectorySettings,
+)
 
-BOTH = pytest.mark.parametrize("settings", [GaitSettings, CorrectionSettings])
+EACH = pytest.mark.parametrize(
+    "settings", [GaitSettings, CorrectionSettings, TrajectorySettings]
+)
 
 
 def test_the_default_walk_takes_11_25_s():
@@ -23,14 +29,15 @@ def test_the_walk_is_one_step_period_longer_than_its_steps():
     assert GaitSettings(steps=3, step_period_s=2.0).duration_s == 8.0
 
 
-@BOTH
+@EACH
 def test_settings_come_back_from_their_mapping(settings):
     assert from_mapping(settings, to_mapping(settings())) == settings()
 
 
-@BOTH
+@EACH
 def test_every_setting_says_what_it_means(settings):
-    assert all(field.metadata["doc"] for field in dataclasses.fields(settings))
+    declared = [field.metadata for field in dataclasses.fields(settings)]
+    assert all(metadata["doc"] for metadata in declared if metadata)
 
 
 @pytest.mark.parametrize("double_support_s", [1.875, 2.0])
@@ -81,3 +88,52 @@ def test_a_gait_out_of_range_is_refused(field, value):
 def test_a_correction_out_of_range_is_refused(field, value):
     with pytest.raises(SettingsError, match=f"^{field} = "):
         CorrectionSettings(**{field: value})
+
+
+def test_a_double_support_lasts_at_least_a_tenth_of_a_second():
+    with pytest.raises(SettingsError, match=r"^double_support_s = 0\.09: must be"):
+        GaitSettings(double_support_s=0.09)
+
+
+def test_a_single_support_lasts_at_least_a_tenth_of_a_second():
+    message = (
+        r"^double_support_s = 1\.78: must leave 0\.1 s of single support in a step$"
+    )
+    with pytest.raises(SettingsError, match=message):
+        GaitSettings(double_support_s=1.78, stand_s=0.0)
+
+
+@pytest.mark.parametrize("period_s", [0.2, 0.3, 0.7, 1.1])
+@pytest.mark.parametrize("single_support_s", [0.1, None])
+def test_phases_of_a_tenth_of_a_second_are_allowed(period_s, single_support_s):
+    double_support_s = 0.1 if single_support_s is None else period_s - 0.1
+    gait = GaitSettings(
+        step_period_s=period_s, double_support_s=double_support_s, stand_s=0.1
+    )
+    assert min(gait.single_support_s, gait.double_support_s) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("correction_limit_m", 0.0),
+        ("correction_limit_m", 0.21),
+        ("correction_limit_m", float("nan")),
+        ("look_ahead_ticks", 0),
+        ("look_ahead_ticks", 601),
+        ("look_ahead_ticks", 1.5),
+    ],
+)
+def test_settings_of_the_node_out_of_range_are_refused(field, value):
+    with pytest.raises(SettingsError, match=f"^{field} = "):
+        TrajectorySettings(**{field: value})
+
+
+def test_an_error_in_the_gait_has_a_dotted_key():
+    with pytest.raises(SettingsError, match=r"^gait\.steps = 2\.5: must be a whole"):
+        from_mapping(TrajectorySettings, {"gait": {"steps": 2.5}})
+
+
+def test_a_gait_made_in_code_has_a_whole_number_of_steps():
+    with pytest.raises(SettingsError, match=r"^steps = 2\.5: must be a whole number$"):
+        GaitSettings(steps=2.5)

@@ -185,3 +185,59 @@ def test_an_infeasible_gait_is_refused_at_once():
 def test_a_segment_cannot_be_changed(corrected):
     with pytest.raises(dataclasses.FrozenInstanceError):
         corrected[0].first_tick = 5
+
+
+def test_look_ahead_is_whole_in_the_last_segment():
+    last = segments(new_reference(look_ahead_ticks=600), ACTIONS)[-1]
+    assert {len(getattr(last, name)) for name in ARRAYS} == {610}
+
+
+def test_look_ahead_beyond_the_end_stands():
+    reference = new_reference(look_ahead_ticks=600)
+    last = segments(reference, np.zeros((SEGMENTS, 2)))[-1]
+    beyond = last.waist[last.n_ticks :]
+    np.testing.assert_allclose(beyond, reference.static_waist[-1:].repeat(605, axis=0))
+
+
+@pytest.mark.parametrize("look_ahead_ticks", [1, 50])
+def test_a_reference_tells_the_rows_of_its_segments(look_ahead_ticks):
+    reference = new_reference(look_ahead_ticks=look_ahead_ticks)
+    assert reference.rows == len(reference.segment(NONE).waist)
+
+
+def test_a_reference_tells_where_its_next_segment_starts():
+    reference = new_reference()
+    told = []
+    for _ in range(3):
+        told.append(reference.tick)
+        assert reference.segment(NONE).first_tick == told[-1]
+    assert told == [0, 10, 20]
+
+
+def test_at_the_end_a_reference_is_at_its_last_tick():
+    reference = new_reference()
+    segments(reference, ACTIONS)
+    assert reference.tick == reference.ticks
+
+
+@EVERY_ARRAY
+def test_the_stance_is_where_walks_start(corrected, name):
+    stance = getattr(new_reference().stance(), name)
+    np.testing.assert_array_equal(stance, getattr(corrected[0], name)[:1])
+
+
+def test_the_stance_has_no_tick_to_walk():
+    stance = new_reference().stance()
+    assert (stance.first_tick, stance.n_ticks) == (0, 0)
+
+
+def test_the_stance_stays_the_same_in_a_walk():
+    reference = new_reference()
+    segments(reference, ACTIONS[:100])
+    assert_same([reference.stance()], [new_reference().stance()])
+
+
+def test_asking_for_the_stance_does_not_move_the_walk_on(corrected):
+    reference = new_reference()
+    reference.stance()
+    assert_same(segments(reference, ACTIONS[:2]), corrected[:2])

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_description.dimensions import BIPED
-from msgs_json.timing import CONTROL_PERIOD_US, microseconds
+from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from trajectory_node.settings import GaitSettings
 
 # The plan runs on beyond the walk's end, standing, for look-ahead.
@@ -63,7 +63,10 @@ def plan_gait(settings: GaitSettings) -> GaitPlan:
     number of control ticks.
     """
     ticks = microseconds(settings.duration_s) // CONTROL_PERIOD_US
-    time_us = np.arange(ticks + LOOK_AHEAD_TICKS + 1) * CONTROL_PERIOD_US
+    time_us = (
+        np.arange(ticks + TICKS_PER_LEARNING_TICK + LOOK_AHEAD_TICKS)
+        * CONTROL_PERIOD_US
+    )
     single_us = microseconds(settings.single_support_s)
     double_us = microseconds(settings.double_support_s)
     length = settings.step_length_m

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from msgs_json.settings import SettingsError, check_ranges, setting
+from msgs_json.settings import SettingsError, check_ranges, section, setting
+
+# A foot or the ZMP cannot be moved in less time than this.
+_SHORTEST_PHASE_S = 0.1
+_ROUNDING_S = 1e-9
 
 
 @dataclass(frozen=True)
@@ -15,10 +19,14 @@ class GaitSettings:
         1.875, "s", "T_step: one single plus one double support", above=0.0, upper=10.0
     )
     double_support_s: float = setting(
-        1.05, "s", "T_ds; smaller makes the task harder", above=0.0, upper=5.0
+        1.05,
+        "s",
+        "T_ds; smaller makes the task harder",
+        lower=_SHORTEST_PHASE_S,
+        upper=5.0,
     )
     stand_s: float = setting(0.2, "s", "standing before the first shift", lower=0.0)
-    steps: int = setting(5, "steps", "single supports; the last closes the feet", lower=1, upper=50)  # fmt: skip  # noqa: E501
+    steps: int = setting(5, "steps", "single supports; the last of several closes the feet", lower=1, upper=50)  # fmt: skip  # noqa: E501
     step_length_m: float = setting(0.10, "m", "advance of each foothold over the other foot's", lower=-0.5, upper=0.5)  # fmt: skip  # noqa: E501
     swing_height_m: float = setting(0.03, "m", "clearance of the swing foot at mid-swing", lower=0.0, upper=0.2)  # fmt: skip  # noqa: E501
     waist_height_m: float = setting(0.475, "m", "constant height of the hip line", lower=0.2, upper=0.6)  # fmt: skip  # noqa: E501
@@ -42,7 +50,13 @@ class GaitSettings:
                 self.double_support_s,
                 f"must be below step_period_s = {self.step_period_s} s",
             )
-        if self.stand_s > self.single_support_s:
+        if self.single_support_s < _SHORTEST_PHASE_S - _ROUNDING_S:
+            raise SettingsError(
+                "double_support_s",
+                self.double_support_s,
+                f"must leave {_SHORTEST_PHASE_S} s of single support in a step",
+            )
+        if self.stand_s > self.single_support_s + _ROUNDING_S:
             raise SettingsError(
                 "stand_s",
                 self.stand_s,
@@ -60,6 +74,24 @@ class CorrectionSettings:
         lower=0.2, upper=2.0,
     )  # fmt: skip
     order: int = setting(3, "", "order of the B-spline (degree + 1)", lower=3, upper=4)
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class TrajectorySettings:
+    """All of the trajectory node."""
+
+    gait: GaitSettings = section(GaitSettings)
+    correction: CorrectionSettings = section(CorrectionSettings)
+    correction_limit_m: float = setting(
+        0.024, "m", "corrections beyond this are refused", above=0.0, upper=0.2
+    )
+    look_ahead_ticks: int = setting(
+        50, "control ticks", "reference handed out beyond a segment", lower=1, upper=600
+    )
 
     def __post_init__(self) -> None:
         """Refuse values out of range."""

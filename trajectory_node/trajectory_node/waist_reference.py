@@ -43,14 +43,35 @@ class WaistReference:
             )
         self.plan = plan_gait(gait)
         self.static_waist = static_waist(self.plan, gait.waist_height_m)
-        self._rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
-        self._spline = CorrectionSpline(correction, self._rows)
+        self.rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
+        """Rows of every segment."""
+        self._spline = CorrectionSpline(correction, self.rows)
         self._tick = 0
 
     @property
     def ticks(self) -> int:
         """Control ticks of the whole walk."""
         return self.plan.ticks
+
+    @property
+    def tick(self) -> int:
+        """Control tick at which the next segment starts."""
+        return self._tick
+
+    def stance(self) -> WaistSegment:
+        """Return the pose in which walks start, as a segment of one row."""
+        plan = self.plan
+        return WaistSegment(
+            first_tick=0,
+            n_ticks=0,
+            waist=self.static_waist[:1],
+            left_foot=plan.left_foot[:1],
+            right_foot=plan.right_foot[:1],
+            zmp_reference=plan.zmp_reference[:1],
+            right_support=plan.right_support[:1],
+            double_support=plan.double_support[:1],
+            step_index=plan.step_index[:1],
+        )
 
     def reset(self) -> None:
         """Go back to the start of the walk, without any correction."""
@@ -76,7 +97,7 @@ class WaistReference:
         if self._tick >= self.plan.ticks:
             raise TrajectoryError(f"the walk of {self.plan.ticks} ticks is over")
         first = self._tick
-        rows = slice(first, first + self._rows)
+        rows = slice(first, first + self.rows)
         waist = self.static_waist[rows].copy()
         waist[:, :2] += self._spline.push(action_m)
         n_ticks = min(TICKS_PER_LEARNING_TICK, self.plan.ticks - first)

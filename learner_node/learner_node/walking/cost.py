@@ -85,6 +85,7 @@ class CostIntegral:
         cause: EndCause,
         target_ticks: int,
         *,
+        learning: bool = False,
         compared_with: float | None = None,
         reward: float = 0.0,
         subtask: int = 0,
@@ -93,6 +94,7 @@ class CostIntegral:
         """Return the result of a walk that ends with `last`."""
         return EpisodeResult(
             episode=last.episode,
+            learning=learning,
             end_cause=cause,
             control_ticks=last.control_tick,
             target_ticks=target_ticks,
@@ -102,6 +104,7 @@ class CostIntegral:
             t_err_estimate=compared_with,
             reward=reward,
             subtask=subtask,
+            trajectory_sha256=last.trajectory_sha256,
             schedule_complete=schedule_complete,
         )
 

@@ -110,6 +110,7 @@ class WalkLearner:
             observation,
             cause,
             self.schedule.target_ticks,
+            learning=True,
             subtask=self.schedule.subtask,
             schedule_complete=self.schedule.complete,
         )
@@ -136,6 +137,7 @@ class WalkLearner:
             observation,
             EndCause.COMPLETED,
             target_ticks,
+            learning=True,
             compared_with=compared_with,
             reward=reward,
             subtask=subtask,

@@ -122,10 +122,10 @@ class ScheduleSettings:
         15, "successes", "LT: RWDforSuc received before t_f is extended", lower=1
     )
     first_target_s: float = setting(
-        1.875, "s", "target walking time of the first subtask (T_step)", above=0.0
+        1.875, "s", "target walking time of the first subtask (T_step)", lower=0.02
     )
     extension_s: float = setting(
-        0.9375, "s", "how much later the next subtask ends (T_step / 2)", above=0.0
+        0.9375, "s", "how much later the next subtask ends (T_step / 2)", lower=0.02
     )
 
     def __post_init__(self) -> None:

@@ -88,7 +88,11 @@ class XolSettings:
         0.98, "per decision", "gamma of the eligibility trace", above=0.0, upper=1.0
     )
     queue_length: int = setting(
-        150, "decisions", "decisions that a reward reaches back (Section 3.2)", lower=1
+        150,
+        "decisions",
+        "decisions that a reward reaches back (Section 3.2)",
+        lower=1,
+        upper=100_000,
     )
     penalty_reach: int = setting(
         3, "decisions", "decisions whose penalty weight P grows by eq. (1)", lower=1

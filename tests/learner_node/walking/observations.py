@@ -11,7 +11,9 @@ PHASE = PhaseFlags(
     step_index=0,
 )
 QUIET = Observation(
+    simulation="by hand",
     episode=0,
+    clock_ticks=0,
     control_tick=0,
     phase=PHASE,
     waist_in_support_foot_m=(0.0, 0.0),
@@ -24,6 +26,7 @@ QUIET = Observation(
     torque_integral_n2m2_s=0.0,
     mean_joint_error_rad=0.0,
     mean_joint_velocity_error_rad_s=0.0,
+    trajectory_sha256="",
 )
 FIELDS = QUIET.__struct_fields__
 

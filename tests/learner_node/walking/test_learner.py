@@ -275,10 +275,12 @@ PENALTIES = {
     EndCause.FEET_UNLOADED: 0,
 }
 PHYSICS_FAULTS = (EndCause.FOOT_THROUGH_FLOOR, EndCause.PHYSICS_NAN)
+FROM_OUTSIDE = (EndCause.PEER_SILENT, EndCause.RESET)
+BLAMELESS = (*PHYSICS_FAULTS, *FROM_OUTSIDE)
 
 
 def test_every_end_of_a_walk_is_considered_here():
-    assert {*PENALTIES, *PHYSICS_FAULTS, EndCause.COMPLETED} == set(EndCause)
+    assert {*PENALTIES, *BLAMELESS, EndCause.COMPLETED} == set(EndCause)
 
 
 def penalties_paid(learner):
@@ -304,15 +306,15 @@ def test_a_failure_counts_against_the_decisions_that_it_is_credited_to(cause):
     assert failures.sum(axis=(1, 2)).tolist() == [0, 2, 2]
 
 
-@pytest.mark.parametrize("cause", PHYSICS_FAULTS)
-def test_a_fault_of_the_physics_pays_no_penalty(cause):
+@pytest.mark.parametrize("cause", BLAMELESS)
+def test_an_end_that_is_not_the_learners_fault_pays_no_penalty(cause):
     learner = new_learner()
     walk(learner, end=29, cause=cause)
     assert penalties_paid(learner) == [0.0, 0.0, 0.0]
     assert not learner.agent.rules.failures.any()
 
 
-@pytest.mark.parametrize("cause", [*PENALTIES, *PHYSICS_FAULTS])
+@pytest.mark.parametrize("cause", [*PENALTIES, *BLAMELESS])
 def test_a_walk_that_fails_gets_no_reward(cause):
     learner = new_learner()
     result = result_of(learner, end=29, cause=cause)

@@ -92,7 +92,7 @@ def _laid_over(
 def _parsed(text: str, name: str) -> Mapping[str, Any]:
     try:
         values = yaml.safe_load(text)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError) as error:
         reason = " ".join(str(error).split())
         raise SettingsError("file", name, f"is not YAML: {reason}") from None
     if values is None:
@@ -109,7 +109,8 @@ def _change(text: str) -> dict[str, Any]:
         raise SettingsError("--set", text, "must have the form section.key=value")
     try:
         nested: Any = yaml.safe_load(value)
-    except yaml.YAMLError:
+    except (yaml.YAMLError, ValueError):
+        # Dates that do not exist and endless numbers are ValueErrors.
         raise SettingsError("--set", text, "the value is not YAML") from None
     for part in reversed(key.split(".")):
         nested = {part: nested}

@@ -2,50 +2,31 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from biped_bringup.episode_log import EpisodeLog
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import Walker
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
-from learner_node.walking.frozen import greedy_walk
+from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.learner import WalkLearner
+from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
-from msgs_json.settings import SettingsError, from_mapping, to_mapping
+from msgs_json.seeds import robot_stream
+from msgs_json.settings import from_mapping, to_mapping
 from msgs_json.timing import seconds
 
 # Packages whose version can change a walk's last bit.
 _PACKAGES = ("biped", "numpy", "numba", "pybullet")
 
 
-@dataclass
-class Tally:
-    """Counts of a run, the part of a checkpoint that is neither memory nor schedule."""
-
-    simulated_ticks: int = 0
-    """Control ticks of all learning episodes."""
-    evaluation_ticks: int = 0
-    """Control ticks of all frozen greedy walks."""
-    evaluations: int = 0
-    schedule_episodes: int | None = None
-    """Episodes when the schedule was complete."""
-    greedy_episodes: int | None = None
-    """Episodes when a frozen greedy walk first succeeded."""
-    cpu_s: float = 0.0
-    trajectories_sha256: str = ""
-    """Chained over the learning episodes."""
-
-
 class TrainingRun:
-    """Learner, robot and bookkeeping of one run with one seed."""
+    """Session and robot of one run with one seed, in this process."""
 
     def __init__(self, settings: RunSettings, seed: int) -> None:
         """Start from nothing.
@@ -55,64 +36,63 @@ class TrainingRun:
             seed: of every random draw; learner and disturbances have streams of their
                 own.
         """
-        learner_stream, robot_stream = np.random.SeedSequence(seed).spawn(2)
         self.settings = settings
         self.seed = seed
-        self._robot_rng = np.random.default_rng(robot_stream)
+        self._robot_rng = np.random.default_rng(robot_stream(seed))
         self.walker = Walker(settings, self._robot_rng)
-        self.learner = WalkLearner(
-            settings.learner,
-            self.walker.walk_ticks,
-            np.random.default_rng(learner_stream),
-        )
-        self.tally = Tally()
-        self.log = EpisodeLog()
+        self.session = LearningSession(settings.learner, self.walker.walk_ticks, seed)
+        self.cpu_s = 0.0
+        self.written_by = _versions()
+        """Package versions that wrote the checkpoint gone on from."""
+
+    @property
+    def version_changes(self) -> list[str]:
+        """Packages that differ from those of the checkpoint, in words."""
+        return [
+            f"{name} {self.written_by.get(name, 'unknown')} -> {now}"
+            for name, now in _versions().items()
+            if self.written_by.get(name) != now
+        ]
 
     # -- learning ------------------------------------------------------------------
 
     @property
+    def learner(self) -> WalkLearner:
+        """The learner of the session."""
+        return self.session.learner
+
+    @property
+    def tally(self) -> Tally:
+        """The session's counts."""
+        return self.session.tally
+
+    @property
+    def log(self) -> EpisodeLog:
+        """The session's episodes."""
+        return self.session.log
+
+    @property
     def episodes(self) -> int:
         """Learning episodes so far."""
-        return len(self.log)
+        return self.session.episodes
 
     @property
     def learned(self) -> bool:
         """Schedule complete, and a frozen greedy walk has succeeded."""
-        return self.tally.greedy_episodes is not None
+        return self.session.learned
 
     def episode(self) -> EpisodeResult:
-        """Walk one learning episode; then, once the schedule is through, try it frozen.
-
-        The trial learns nothing. It follows only episodes that completed the walk: a
-        learner that does not even complete it with chance on its side will not do so
-        without.
-        """
+        """Walk one learning episode and, where one is due, the trial after it."""
         started = time.process_time()
-        result = self.walker.walk(self.learner, self.episodes + 1)
-        tally = self.tally
-        tally.simulated_ticks += result.control_ticks
-        tally.trajectories_sha256 = hashlib.sha256(
-            (tally.trajectories_sha256 + self.walker.biped.trajectory_sha256).encode()
-        ).hexdigest()
-        self.log.append(result)
-        if result.schedule_complete:
-            if tally.schedule_episodes is None:
-                tally.schedule_episodes = self.episodes
-            if result.completed and not self.learned:
-                trial = self.greedy_walk()
-                tally.evaluations += 1
-                tally.evaluation_ticks += trial.control_ticks
-                if trial.completed:
-                    tally.greedy_episodes = self.episodes
-        tally.cpu_s += time.process_time() - started
+        result = self.walker.walk(self.session)
+        if self.session.trial_due:
+            self.walker.walk(self.session)
+        self.cpu_s += time.process_time() - started
         return result
 
     def greedy_walk(self) -> EpisodeResult:
         """Walk the whole walk greedily, without learning."""
-        frozen = greedy_walk(
-            self.settings.learner, self.walker.walk_ticks, self.learner.agent
-        )
-        return self.walker.walk(frozen, episode=0)
+        return self.walker.walk(self.session.greedy())
 
     def run(
         self,
@@ -146,17 +126,12 @@ class TrainingRun:
         """Write all that the run needs to go on bit for bit."""
         header = {
             "settings": to_mapping(self.settings),
-            "seed": self.seed,
-            "progress": self.learner.progress(),
+            **self.session.header(),
             "robot_rng": self._robot_rng.bit_generator.state,
-            "tally": vars(self.tally),
-            "versions": {name: version(name) for name in _PACKAGES},
+            "cpu_s": self.cpu_s,
+            "versions": _versions(),
         }
-        arrays = {
-            **{f"memory/{k}": v for k, v in self.learner.agent.memory().items()},
-            **{f"log/{k}": v for k, v in self.log.arrays().items()},
-        }
-        write_checkpoint(path, header, arrays)
+        write_checkpoint(path, header, self.session.arrays())
 
     @classmethod
     def load(cls, path: Path) -> TrainingRun:
@@ -166,21 +141,24 @@ class TrainingRun:
             CheckpointError: the file is no usable checkpoint.
         """
         header, arrays = read_checkpoint(path)
-        groups: dict[str, dict[str, Any]] = {"memory": {}, "log": {}}
+        run = None
         try:
-            for name, array in arrays.items():
-                group, _, key = name.partition("/")
-                groups[group][key] = array
             run = cls(from_mapping(RunSettings, header["settings"]), header["seed"])
-            run.learner.restore(header["progress"], groups["memory"])
-            run._robot_rng.bit_generator.state = header["robot_rng"]
-            run.tally = Tally(**header["tally"])
-            run.log = EpisodeLog(groups["log"])
-        except (KeyError, TypeError, ValueError, SettingsError) as error:
+            run.session.restore(header, arrays)
+            # A learner on ROS does not know the robot's generator.
+            if "robot_rng" in header:
+                run._robot_rng.bit_generator.state = header["robot_rng"]
+            run.cpu_s = float(header.get("cpu_s", 0.0))
+        except (
+            AttributeError, KeyError, OverflowError, TypeError, ValueError
+        ) as error:  # fmt: skip
+            if run is not None:
+                run.close()
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise CheckpointError(
                 f"{path}: does not fit this program, {reason}"
             ) from error
+        run.written_by = dict(header.get("versions", {}))
         return run
 
     def summary(self, memory_file: Path) -> dict[str, Any]:
@@ -196,7 +174,7 @@ class TrainingRun:
             "evaluations": tally.evaluations,
             "simulated_s": seconds(tally.simulated_ticks),
             "evaluation_s": seconds(tally.evaluation_ticks),
-            "cpu_s": round(tally.cpu_s, 3),
+            "cpu_s": round(self.cpu_s, 3),
             "basis_states": agent.basis_states,
             "fixed_states": agent.fixed_states,
             "penalty_states": agent.penalty_states,
@@ -205,3 +183,7 @@ class TrainingRun:
             "trajectory_sha256": tally.trajectories_sha256,
             "memory_file": str(memory_file),
         }
+
+
+def _versions() -> dict[str, str]:
+    return {name: version(name) for name in _PACKAGES}

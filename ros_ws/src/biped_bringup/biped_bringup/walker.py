@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_bringup.run_settings import RunSettings
-from learner_node.walking.actions import NO_CORRECTION_M
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.biped import SimulatedBiped
@@ -41,18 +40,19 @@ class Walker:
             on_tick: called after every control tick.
         """
         self.reference = WaistReference(settings.gait, settings.correction)
-        standing = self.reference.segment(NO_CORRECTION_M)
-        self.biped = SimulatedBiped(settings.sim, standing, rng, on_tick)
+        self.biped = SimulatedBiped(settings.sim, self.reference.stance(), rng, on_tick)
+        self._walks = 0
 
     @property
     def walk_ticks(self) -> int:
         """Control ticks of the whole walk."""
         return self.reference.ticks
 
-    def walk(self, responder: Responder, episode: int) -> EpisodeResult:
+    def walk(self, responder: Responder) -> EpisodeResult:
         """Walk until the responder gives a result."""
+        self._walks += 1
         self.reference.reset()
-        answer = responder.respond(self.biped.begin_walk(episode))
+        answer = responder.respond(self.biped.begin_walk(self._walks))
         while not isinstance(answer, EpisodeResult):
             observation = self.biped.execute(self.reference.segment(answer))
             answer = responder.respond(observation)

@@ -15,6 +15,7 @@ from sim_node.control_tick import ControlTick
 from sim_node.settings import LimitSettings
 from trajectory_node.gait import GaitPlan
 
+FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
 _MEASURED, _REFERENCE, _LIMIT, _SHADE = "#1f6fb4", "#e08214", "#b2182b", "#e8eef4"
 
 

@@ -49,8 +49,8 @@ def run_seed(seed: int, out: Path, learn_options: list[str]) -> dict[str, Any]:
     folder = out / f"seed_{seed}"
     command = [sys.executable, "-m", "biped_bringup.cli.main"]
     learned = subprocess.run(
-        [*command, "learn", "--json", "--seed", str(seed), "--out", str(folder),
-         *learn_options],
+        [*command, "learn", "--json", "--fresh", "--seed", str(seed),
+         "--out", str(folder), *learn_options],
         capture_output=True, text=True,
     )  # fmt: skip
     if learned.returncode not in (0, 1):
@@ -74,7 +74,9 @@ def read_runs(runs_file: Path) -> list[dict[str, Any]]:
     """Return the runs carried out so far."""
     if not runs_file.exists():
         return []
-    return [json.loads(line) for line in runs_file.read_text().splitlines()]
+    # A line without its end was being written when the study was killed.
+    lines = runs_file.read_text().splitlines(keepends=True)
+    return [json.loads(line) for line in lines if line.endswith("\n")]
 
 
 def summary(runs: list[dict[str, Any]]) -> str:
@@ -113,14 +115,17 @@ def _row(run: dict[str, Any]) -> str:
         f"  greedy {run['greedy_episodes'] or '-':>5}  episodes {run['episodes']:5d}"
         f"  simulated {run['simulated_s']:7.0f} s  CPU {run['cpu_s']:5.0f} s"
         f"  states {run['basis_states']}/{run['fixed_states']}/{run['penalty_states']}"
-        f"  walk {walk['control_ticks']} ticks,"
+        f" walk {walk['control_ticks']} ticks,"
         f" {1000 * walk['peak_zmp_error_m']:.1f} mm"
     )
 
 
 def _seeds(text: str) -> list[int]:
     first, _, last = text.partition("-")
-    return list(range(int(first), int(last or first) + 1))
+    seeds = list(range(int(first), int(last or first) + 1))
+    if not seeds:
+        raise argparse.ArgumentTypeError(f"{text}: the last seed is before the first")
+    return seeds
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +20,7 @@ from biped_bringup.cli.options import (
     writable_folder,
 )
 from biped_bringup.cli.progress import TrainingProgress
+from biped_bringup.cli.signals import stop_requests
 from biped_bringup.training import TrainingRun
 from learner_node.atomic_file import atomic_file
 from msgs_json.episode_result import EpisodeResult
@@ -70,6 +68,9 @@ def add_parser(verbs: Any) -> None:
         help=f"go on from a {MEMORY_FILE}, bit for bit as if never interrupted",
     )
     parser.add_argument(
+        "--fresh", action="store_true", help=f"replace a {MEMORY_FILE} in --out"
+    )
+    parser.add_argument(
         "--checkpoint-every",
         type=float,
         default=20.0,
@@ -89,9 +90,18 @@ def run(options: argparse.Namespace) -> int:
         or (options.resume.parent if options.resume is not None else _DEFAULT_OUT)
     )
     memory_file = folder / MEMORY_FILE
+    if options.resume is None and memory_file.exists() and not options.fresh:
+        training.close()
+        raise CommandError(
+            f"{memory_file}: is there already; give --resume {memory_file} to go on "
+            "with it, --fresh to replace it, or another --out"
+        )
     console = Console(stderr=True)
+    if training.version_changes:
+        changes = ", ".join(training.version_changes)
+        console.print(f"going on with other versions, not bit for bit: {changes}")
     try:
-        with _stop_requests() as stops, TrainingProgress(training, console) as progress:
+        with stop_requests() as stops, TrainingProgress(training, console) as progress:
             saved = time.monotonic()
 
             def after_episode(_: EpisodeResult) -> bool:
@@ -129,25 +139,6 @@ def _training(options: argparse.Namespace) -> TrainingRun:
             "--preset, --config, --set and --seed cannot be given with it"
         )
     return TrainingRun.load(options.resume)
-
-
-@contextmanager
-def _stop_requests() -> Iterator[list[int]]:
-    """Collect SIGINT and SIGTERM; a second one falls through to the old handler."""
-    requests: list[int] = []
-    old: dict[int, Any] = {}
-
-    def request(number: int, _: Any) -> None:
-        requests.append(number)
-        signal.signal(number, old[number])
-
-    for number in (int(signal.SIGINT), int(signal.SIGTERM)):
-        old[number] = signal.signal(number, request)
-    try:
-        yield requests
-    finally:
-        for number, handler in old.items():
-            signal.signal(number, handler)
 
 
 def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:

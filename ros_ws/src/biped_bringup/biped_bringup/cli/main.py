@@ -7,18 +7,20 @@ Exit status: 0 done; 1 an honest "not achieved" (walk not learned, walk failed);
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 
 import argcomplete
 
-from biped_bringup.cli import check, learn, walk
+from biped_bringup.cli import check, learn, up, walk
 from biped_bringup.cli.errors import CommandError
 from learner_node.checkpoint import CheckpointError
 from msgs_json.settings import SettingsError
 from trajectory_node.errors import TrajectoryError
 
 WRONG_INPUT = 2
+INTERRUPTED = 130
 
 
 def parser() -> argparse.ArgumentParser:
@@ -30,7 +32,7 @@ def parser() -> argparse.ArgumentParser:
         epilog="exit status: 0 done, 1 not achieved, 2 wrong input, 130 interrupted",
     )
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for verb in (learn, walk, check):
+    for verb in (learn, walk, up, check):
         verb.add_parser(verbs)
     return top
 
@@ -42,9 +44,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = commands.parse_args(arguments)
     try:
         status: int = options.run(options)
+        sys.stdout.flush()
     except (SettingsError, TrajectoryError, CheckpointError, CommandError) as error:
         print(f"biped {options.verb}: {error}", file=sys.stderr)
         return WRONG_INPUT
+    except BrokenPipeError:
+        # Whoever read the output has seen enough; Python must not flush it again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return INTERRUPTED
+    except OSError as error:
+        # A disk that is full, a folder that has gone: what was saved before stays.
+        print(f"biped {options.verb}: cannot go on: {error}", file=sys.stderr)
+        return WRONG_INPUT
+    except KeyboardInterrupt:
+        return INTERRUPTED
     return status
 
 

@@ -23,14 +23,17 @@ class TrainingProgress:
         """Prepare; show nothing yet."""
         self._run = run
         self._console = console
-        self._live = Live(console=console, refresh_per_second=4)
+        self._live = (
+            Live(console=console, refresh_per_second=4) if console.is_terminal else None
+        )
         self._since = time.monotonic()
         self._shown = self._since
         self._ticks_before = run.tally.simulated_ticks + run.tally.evaluation_ticks
 
     def __enter__(self) -> TrainingProgress:
         """Start to show."""
-        self._live.start()
+        if self._live is not None:
+            self._live.start()
         return self
 
     def __exit__(
@@ -40,17 +43,23 @@ class TrainingProgress:
         trace: TracebackType | None,
     ) -> None:
         """Leave the last state on the screen."""
-        self._live.update(Text(self.line()))
-        self._live.stop()
+        if self._live is not None:
+            self._live.update(Text(self.line()))
+            self._live.stop()
+        else:
+            self._print_line()
 
     def update(self) -> None:
         """Show the run as it stands."""
         now = time.monotonic()
-        if self._console.is_terminal:
+        if self._live is not None:
             self._live.update(Text(self.line()))
         elif now - self._shown >= _PLAIN_INTERVAL_S:
             self._shown = now
-            self._console.print(self.line(), highlight=False, soft_wrap=True)
+            self._print_line()
+
+    def _print_line(self) -> None:
+        self._console.print(self.line(), highlight=False, soft_wrap=True)
 
     def line(self) -> str:
         """Return the state in one line."""

@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+import yaml
 
 from biped_bringup.cli.errors import CommandError
 from biped_bringup.cli.options import (
@@ -20,7 +21,7 @@ from biped_bringup.cli.options import (
 from biped_bringup.run_settings import changed_settings
 from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
-from biped_bringup.zmp_figure import ZmpTrace, draw_zmp
+from biped_bringup.zmp_figure import FIGURE_SUFFIXES, ZmpTrace, draw_zmp
 from learner_node.walking.frozen import greedy_walk, static_walk
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.timing import seconds
@@ -65,9 +66,9 @@ def add_parser(verbs: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Walk and report."""
     if options.tds is not None:
-        options.changes.append(f"gait.double_support_s={options.tds}")
-    if options.figure is not None and not options.figure.parent.is_dir():
-        raise CommandError(f"{options.figure.parent}: is not a folder")
+        options.changes.append(f"gait.double_support_s={_yaml_number(options.tds)}")
+    if options.figure is not None:
+        _check_figure(options.figure)
     result, sha256 = _walk(options)
     if options.json:
         print_json(_summary(result, sha256))
@@ -76,6 +77,19 @@ def run(options: argparse.Namespace) -> int:
         if options.figure is not None:
             print(f"picture of the ZMP   {options.figure}")
     return 0 if result.completed else 1
+
+
+def _yaml_number(value: float) -> str:
+    """Return a number as YAML 1.1 understands it: 1e-05 would be text."""
+    return str(yaml.safe_dump(value)).split()[0]
+
+
+def _check_figure(path: Path) -> None:
+    """Refuse a picture that could not be written, before the walk is walked."""
+    if path.suffix not in FIGURE_SUFFIXES:
+        raise CommandError(f"--figure {path}: must end in {', '.join(FIGURE_SUFFIXES)}")
+    if path.is_dir() or not path.parent.is_dir():
+        raise CommandError(f"--figure {path}: must be a file in a folder that exists")
 
 
 def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
@@ -101,7 +115,7 @@ def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
             responder = greedy_walk(settings.learner, walker.walk_ticks, agent)
         else:
             responder = static_walk(settings.learner, walker.walk_ticks)
-        result = walker.walk(responder, episode=1)
+        result = walker.walk(responder)
         if options.figure is not None:
             draw_zmp(trace, walker.reference.plan, settings.sim.limits, options.figure)
         return result, walker.biped.trajectory_sha256

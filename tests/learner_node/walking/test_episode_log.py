@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from biped_bringup.episode_log import EpisodeLog
+from learner_node.walking.episode_log import EpisodeLog
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms, EpisodeResult
 
@@ -30,6 +30,7 @@ def result(
 ) -> EpisodeResult:
     return EpisodeResult(
         episode=1,
+        learning=True,
         end_cause=end_cause,
         control_ticks=control_ticks,
         target_ticks=target_ticks,
@@ -39,6 +40,7 @@ def result(
         t_err_estimate=None,
         reward=reward,
         subtask=0,
+        trajectory_sha256="",
         schedule_complete=False,
     )
 

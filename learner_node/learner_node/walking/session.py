@@ -1,0 +1,188 @@
+"""A learning session: learner, frozen trials, tally and log, walk after walk.
+
+The same object learns in one process, in a ROS node and in tests. It sees nothing but
+observations, and what it needs to go on bit for bit is in one checkpoint.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learner_node.memory_hash import Arrays
+from learner_node.walking.episode_log import EpisodeLog
+from learner_node.walking.frozen import FrozenWalk, greedy_walk
+from learner_node.walking.learner import WalkLearner
+from learner_node.walking.settings import LearnerSettings
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.learner_status import LearnerStatus
+from msgs_json.observation import Observation
+from msgs_json.seeds import learner_stream
+from msgs_json.timing import seconds
+
+_MEMORY, _LOG = "memory", "log"
+
+
+@dataclass
+class Tally:
+    """Counts of a session, beside memory and schedule."""
+
+    simulated_ticks: int = 0
+    """Control ticks of all learning episodes."""
+    evaluation_ticks: int = 0
+    """Control ticks of all frozen greedy walks."""
+    evaluations: int = 0
+    schedule_episodes: int | None = None
+    """Episodes when the schedule was complete."""
+    greedy_episodes: int | None = None
+    """Episodes when a frozen greedy walk first succeeded."""
+    trajectories_sha256: str = ""
+    """Chained over the learning episodes."""
+
+
+class LearningSession:
+    """Answers observations, learns from them, and tries the walk frozen when due."""
+
+    def __init__(self, settings: LearnerSettings, walk_ticks: int, seed: int) -> None:
+        """Start from nothing.
+
+        Args:
+            settings: all constants of the learner.
+            walk_ticks: control ticks of the whole walk.
+            seed: of every random choice of the learner.
+        """
+        self.settings = settings
+        self.seed = seed
+        self.walk_ticks = walk_ticks
+        self.learner = WalkLearner(
+            settings, walk_ticks, np.random.default_rng(learner_stream(seed))
+        )
+        self.tally = Tally()
+        self.log = EpisodeLog()
+        self.frozen = False
+        """Set by a user: walks are greedy, and nothing is learned."""
+        self._trial_due = False
+        self.walking = False
+        """Whether a walk is under way; checkpoints are taken between walks."""
+        self._walk: WalkLearner | FrozenWalk = self.learner
+
+    @property
+    def episodes(self) -> int:
+        """Learning episodes so far."""
+        return len(self.log)
+
+    @property
+    def learned(self) -> bool:
+        """Schedule complete, and a frozen greedy walk has succeeded."""
+        return self.tally.greedy_episodes is not None
+
+    @property
+    def trial_due(self) -> bool:
+        """Whether the next walk is a frozen trial.
+
+        Trials follow learning episodes that completed the whole walk, once the schedule
+        is complete: a learner that does not complete it with chance on its side will
+        not do so without.
+        """
+        return self._trial_due
+
+    def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
+        """Return the correction [m] for the coming learning tick, or the result."""
+        if observation.control_tick == 0 and observation.end_cause is None:
+            self._walk = (
+                self.greedy() if self.frozen or self._trial_due else self.learner
+            )
+            self.walking = True
+        answer = self._walk.respond(observation)
+        if isinstance(answer, EpisodeResult):
+            self.walking = False
+            self._count(answer)
+        return answer
+
+    def greedy(self) -> FrozenWalk:
+        """Return a frozen greedy walk of the present memory."""
+        return greedy_walk(self.settings, self.walk_ticks, self.learner.agent)
+
+    def status(self, instance: str, active: bool) -> LearnerStatus:
+        """Return how far the session has come, under the learner's name."""
+        agent, schedule = self.learner.agent, self.learner.schedule
+        return LearnerStatus(
+            instance=instance,
+            active=active,
+            seed=self.seed,
+            target_time_s=seconds(schedule.target_ticks),
+            subtask=schedule.subtask,
+            subtasks=len(schedule.targets),
+            successes=schedule.successes,
+            episodes=self.episodes,
+            survival=self.log.survival(),
+            basis_states=agent.basis_states,
+            fixed_states=agent.fixed_states,
+            penalty_states=agent.penalty_states,
+            t_err_estimate=self.learner.estimate.value,
+            schedule_complete=schedule.complete,
+            learned=self.learned,
+            frozen=self.frozen,
+            simulated_s=seconds(self.tally.simulated_ticks),
+            memory_sha256=self.learner.memory_sha256(),
+            trajectory_sha256=self.tally.trajectories_sha256,
+        )
+
+    def header(self) -> dict[str, Any]:
+        """Return what goes into a checkpoint's header."""
+        return {
+            "seed": self.seed,
+            "progress": self.learner.progress(),
+            "trial_due": self._trial_due,
+            "tally": vars(self.tally),
+        }
+
+    def arrays(self) -> Arrays:
+        """Return what goes into a checkpoint as arrays."""
+        groups = {_MEMORY: self.learner.agent.memory(), _LOG: self.log.arrays()}
+        return {
+            f"{group}/{name}": array
+            for group, arrays in groups.items()
+            for name, array in arrays.items()
+        }
+
+    def restore(self, header: Mapping[str, Any], arrays: Arrays) -> None:
+        """Go on between two walks, as if never interrupted.
+
+        Raises:
+            KeyError, TypeError, ValueError: the content does not fit these settings.
+        """
+        groups: dict[str, Arrays] = {_MEMORY: {}, _LOG: {}}
+        for name, array in arrays.items():
+            group, _, key = name.partition("/")
+            groups[group][key] = array
+        tally, log = Tally(**header["tally"]), EpisodeLog(groups[_LOG])
+        self.learner.restore(header["progress"], groups[_MEMORY])
+        self.seed = int(header["seed"])
+        self._trial_due = bool(header["trial_due"])
+        self.tally, self.log = tally, log
+
+    def _count(self, result: EpisodeResult) -> None:
+        tally = self.tally
+        if not result.learning:
+            tally.evaluations += 1
+            tally.evaluation_ticks += result.control_ticks
+            if self._trial_due and result.completed:
+                tally.greedy_episodes = self.episodes
+            self._trial_due = False
+            return
+        tally.simulated_ticks += result.control_ticks
+        tally.trajectories_sha256 = hashlib.sha256(
+            (tally.trajectories_sha256 + result.trajectory_sha256).encode()
+        ).hexdigest()
+        self.log.append(result)
+        if result.schedule_complete and tally.schedule_episodes is None:
+            tally.schedule_episodes = self.episodes
+        self._trial_due = (
+            result.schedule_complete and result.completed and not self.learned
+        )

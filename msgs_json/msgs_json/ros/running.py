@@ -1,0 +1,61 @@
+"""Run a node as a process, from its start to an orderly end."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.experimental import EventsExecutor
+from rclpy.task import Future
+
+from msgs_json.ros.guarded import GuardedNode
+from msgs_json.settings import SettingsError
+
+WRONG_INPUT = 2
+REFUSED = 4
+# The events executor cannot be interrupted in an endless spin, so it spins in turns.
+_TURN_S = 0.2
+
+
+def run_node(make: Callable[[], GuardedNode]) -> int:
+    """Make a node, spin it until SIGINT or SIGTERM, and close it.
+
+    Returns:
+        The exit status: 0 after an orderly end, 2 for wrong parameters, 4 when the node
+        gave up.
+    """
+    # Signals end the loop below, not the middle of a callback.
+    rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+    stops: list[int] = []
+
+    def stop(number: int, _: Any) -> None:
+        stops.append(number)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    node = None
+    try:
+        node = make()
+        executor = EventsExecutor()
+        executor.add_node(node)
+        never: Future = Future()
+        while not stops and node.failure is None:
+            executor.spin_until_future_complete(never, timeout_sec=_TURN_S)
+        if node.failure is not None:
+            print(f"{node.get_name()} gives up: {node.failure}", file=sys.stderr)
+            return REFUSED
+        return 0
+    except SettingsError as error:
+        print(f"wrong parameter: {error}", file=sys.stderr)
+        return WRONG_INPUT
+    except ExternalShutdownException:
+        return 0
+    finally:
+        if node is not None:
+            node.close()
+            node.destroy_node()
+        rclpy.try_shutdown()

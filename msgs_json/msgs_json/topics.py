@@ -1,0 +1,117 @@
+"""Names, types and quality of service of everything on the graph, in one place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic of the graph."""
+
+    name: str
+    type_name: str
+    """As ROS writes it, package/msg/Type."""
+    depth: int = 1000
+    """History kept for slow subscribers; 1,000 lose nothing at 500 Hz for 2 s."""
+    latched: bool = False
+    """Transient local: who comes later gets the last message."""
+    meaning: str = ""
+    """What it carries, with units and frame."""
+
+
+CLOCK = Topic(
+    "/clock",
+    "rosgraph_msgs/msg/Clock",
+    meaning="simulated time, one control tick apart",
+)
+JOINT_STATES = Topic(
+    "/joint_states",
+    "sensor_msgs/msg/JointState",
+    meaning="12 joints: position [rad], velocity [rad/s], effort [N m]",
+)
+JOINT_REFERENCES = Topic(
+    "/biped/joint_references",
+    "sensor_msgs/msg/JointState",
+    meaning="12 joints: position asked for [rad]",
+)
+ZMP = Topic(
+    "/biped/zmp",
+    "geometry_msgs/msg/PointStamped",
+    meaning="measured ZMP, world frame [m]",
+)
+ZMP_REFERENCE = Topic(
+    "/biped/zmp_reference",
+    "geometry_msgs/msg/PointStamped",
+    meaning="planned ZMP, world frame [m]",
+)
+PHASE = Topic("/biped/phase", "std_msgs/msg/String", meaning="PhaseFlags, JSON")
+OBSERVATION = Topic(
+    "/biped/observation", "std_msgs/msg/String", depth=100, meaning="Observation, JSON"
+)
+CORRECTION = Topic(
+    "/biped/correction",
+    "geometry_msgs/msg/Vector3Stamped",
+    depth=100,
+    meaning="waist correction (dx, dy) [m], stamped as the observation it answers",
+)
+WAIST_REFERENCE = Topic(
+    "/biped/waist_reference",
+    "trajectory_msgs/msg/MultiDOFJointTrajectory",
+    depth=100,
+    meaning="waist, feet, ZMP reference [m, world] and phase per control tick",
+)
+STANCE = Topic(
+    "/biped/stance",
+    "trajectory_msgs/msg/MultiDOFJointTrajectory",
+    depth=1,
+    latched=True,
+    meaning="the pose in which walks start, a waist reference of one control tick",
+)
+EPISODE = Topic(
+    "/biped/episode", "std_msgs/msg/String", depth=100, meaning="EpisodeResult, JSON"
+)
+LEARNER_STATUS = Topic(
+    "/biped/learner",
+    "std_msgs/msg/String",
+    depth=1,
+    latched=True,
+    meaning="LearnerStatus, JSON",
+)
+ROBOT_DESCRIPTION = Topic(
+    "/robot_description",
+    "std_msgs/msg/String",
+    depth=1,
+    latched=True,
+    meaning="URDF",
+)
+MARKERS = Topic(
+    "/biped/markers",
+    "visualization_msgs/msg/MarkerArray",
+    depth=10,
+    meaning="support polygon, ZMP, its reference, waist path; world frame [m]",
+)
+DIAGNOSTICS = Topic(
+    "/diagnostics",
+    "diagnostic_msgs/msg/DiagnosticArray",
+    depth=10,
+    meaning="rates, lateness, deadlines missed, messages dropped and refused",
+)
+
+TOPICS = (
+    CLOCK,
+    JOINT_STATES,
+    JOINT_REFERENCES,
+    ZMP,
+    ZMP_REFERENCE,
+    PHASE,
+    OBSERVATION,
+    CORRECTION,
+    WAIST_REFERENCE,
+    STANCE,
+    EPISODE,
+    LEARNER_STATUS,
+    ROBOT_DESCRIPTION,
+    MARKERS,
+    DIAGNOSTICS,
+)

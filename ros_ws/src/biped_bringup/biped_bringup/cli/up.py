@@ -1,0 +1,217 @@
+"""`biped up`: the nodes on ROS 2, supervised."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.learn import INTERRUPTED, MEMORY_FILE
+from biped_bringup.cli.options import (
+    add_settings_options,
+    names_settings,
+    natural,
+    settings_of,
+    writable_folder,
+)
+from biped_bringup.cli.signals import stop_requests
+from biped_bringup.cli.status_screen import StatusScreen
+from biped_bringup.node_parameters import node_parameters
+from biped_bringup.run_settings import RunSettings
+from biped_bringup.supervisor.environment import (
+    DISCOVERY_RANGES,
+    node_environment,
+    private_domain,
+)
+from biped_bringup.supervisor.supervisor import (
+    START_ORDER,
+    NodeFailureError,
+    Supervisor,
+)
+from biped_bringup.training import TrainingRun
+from msgs_json.timing import seconds
+from trajectory_node.waist_reference import WaistReference
+
+NODE_FAILURE = 3
+_DEFAULT_OUT = Path("bags/up")
+
+
+def add_parser(verbs: Any) -> None:
+    """Add the verb."""
+    parser: argparse.ArgumentParser = verbs.add_parser(
+        "up",
+        help="learn, or walk, on the ROS 2 graph: three nodes, supervised",
+        description="Start trajectory_node, learner_node and sim_node as processes, "
+        "watch them, restart them, and end them all. Ends when the walk is learned, or "
+        "after --episodes. Exit status 0 when learned (or walked, with --greedy), 1 "
+        "when not, 2 for wrong input, 3 when a node could not be kept running, 130 "
+        "when interrupted.",
+    )
+    parser.add_argument(
+        "--pace",
+        choices=("lockstep", "realtime"),
+        default="lockstep",
+        help="as fast as all can (default), or 500 Hz in real time",
+    )
+    parser.add_argument(
+        "--greedy",
+        action="store_true",
+        help=f"walk once, greedily, from the {MEMORY_FILE} in --out; learn nothing",
+    )
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help=f"go on from the {MEMORY_FILE} in --out, with its settings and seed",
+    )
+    parser.add_argument("--seed", type=natural, metavar="N", help="default 0")
+    parser.add_argument(
+        "--episodes", type=natural, metavar="N", help="end after N learning episodes"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=_DEFAULT_OUT,
+        metavar="DIR",
+        help=f"folder for {MEMORY_FILE}, parameter files and logs "
+        f"(default {_DEFAULT_OUT})",
+    )
+    parser.add_argument(
+        "--nodes",
+        default=",".join(name.removesuffix("_node") for name in START_ORDER),
+        metavar="A,B",
+        help="which nodes to start here, of trajectory,learner,sim (default all); the "
+        "others may run on another machine, see --domain and --discovery",
+    )
+    parser.add_argument(
+        "--domain",
+        type=natural,
+        metavar="ID",
+        help="ROS_DOMAIN_ID (default: one of this run's own)",
+    )
+    parser.add_argument(
+        "--discovery",
+        choices=DISCOVERY_RANGES,
+        default=DISCOVERY_RANGES[0],
+        help="who may join: processes on this machine (default), or in the subnet",
+    )
+    parser.add_argument(
+        "--publish-every",
+        type=natural,
+        default=1,
+        metavar="TICKS",
+        help="control ticks (2 ms) between messages of the fast topics (default 1)",
+    )
+    parser.add_argument(
+        "--no-view", action="store_true", help="plain lines instead of a live screen"
+    )
+    add_settings_options(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Supervise and report."""
+    names = _nodes(options.nodes)
+    folder = writable_folder(options.out).resolve()
+    memory_file = folder / MEMORY_FILE
+    settings, seed = _settings_and_seed(options, memory_file)
+    WaistReference(settings.gait, settings.correction)  # refuses infeasible gaits here
+    parameters = node_parameters(
+        settings,
+        seed,
+        checkpoint_file=str(memory_file),
+        max_episodes=1 if options.greedy else options.episodes or 0,
+        publish_every_ticks=max(1, options.publish_every),
+        pace=options.pace,
+        frozen=options.greedy,
+    ).flat()
+    domain = private_domain() if options.domain is None else options.domain
+    environment = node_environment(domain, options.discovery)
+    screen = StatusScreen(Console(stderr=True), live=not options.no_view)
+    with stop_requests() as stops, screen:
+        screen.line("supervisor", f"ROS_DOMAIN_ID={domain}, {options.discovery}")
+        supervisor = Supervisor(
+            {name: parameters[name] for name in names},
+            environment,
+            folder,
+            screen.line,
+        )
+        failure = None
+        graph = supervisor.graph
+
+        def done() -> bool:
+            screen.update(supervisor)
+            if options.greedy:
+                return graph.results > 0
+            status = graph.status
+            return status is not None and (
+                status.learned or status.episodes >= (options.episodes or float("inf"))
+            )
+
+        try:
+            supervisor.run(done, lambda: bool(stops))
+        except NodeFailureError as error:
+            failure = error
+        finally:
+            supervisor.stop()
+    if failure is not None:
+        print(f"failed: {failure}; logs are in {folder}")
+        return NODE_FAILURE
+    return _report(supervisor, options, memory_file, interrupted=bool(stops))
+
+
+def _nodes(text: str) -> list[str]:
+    names = [f"{name.strip()}_node" for name in text.split(",")]
+    unknown = [name for name in names if name not in START_ORDER]
+    if unknown:
+        raise CommandError(f"--nodes {text}: must be among trajectory,learner,sim")
+    return names
+
+
+def _settings_and_seed(
+    options: argparse.Namespace, memory_file: Path
+) -> tuple[RunSettings, int]:
+    if options.greedy or options.resume:
+        if names_settings(options) or options.seed is not None:
+            raise CommandError(
+                "--greedy, --resume: go on with the settings and the seed of the "
+                "memory; --preset, --config, --set and --seed cannot be given with them"
+            )
+        learned = TrainingRun.load(memory_file)
+        learned.close()
+        return learned.settings, learned.seed
+    if memory_file.exists():
+        raise CommandError(
+            f"{memory_file}: is there already; give --resume to go on with it, "
+            "or another --out"
+        )
+    return settings_of(options), options.seed or 0
+
+
+def _report(
+    supervisor: Supervisor,
+    options: argparse.Namespace,
+    memory_file: Path,
+    interrupted: bool,
+) -> int:
+    status, result = supervisor.graph.status, supervisor.graph.result
+    if options.greedy and result is not None:
+        print(
+            f"greedy walk: {result.end_cause} after {seconds(result.control_ticks):g} s"
+            f", peak ZMP error {1000 * result.peak_zmp_error_m:.1f} mm"
+        )
+    elif status is not None:
+        print(
+            f"{'learned' if status.learned else 'not learned yet'}: "
+            f"{status.episodes} episodes, {status.simulated_s:.1f} simulated s, "
+            f"{status.basis_states} states, {status.fixed_states} fixed\n"
+            f"memory  {memory_file}"
+        )
+    if interrupted:
+        print(f"interrupted; go on with biped up --resume --out {options.out}")
+        return INTERRUPTED
+    if options.greedy:
+        return 0 if result is not None and result.completed else 1
+    return 0 if status is not None and status.learned else 1

@@ -1,0 +1,87 @@
+"""What each node is told: a run's settings as the parameters of the three nodes."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from biped_bringup.run_settings import RunSettings
+from learner_node.settings import LearnerNodeSettings
+from msgs_json.ros.parameters import flattened
+from msgs_json.settings import to_mapping
+from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
+from sim_node.settings import SimNodeSettings
+from trajectory_node.settings import TrajectorySettings
+
+_LOOK_AHEAD_TICKS = 50
+
+
+@dataclass(frozen=True)
+class NodeParameters:
+    """Settings of the three nodes of one run."""
+
+    sim: SimNodeSettings
+    trajectory: TrajectorySettings
+    learner: LearnerNodeSettings
+
+    def flat(self) -> dict[str, dict[str, Any]]:
+        """Return the parameters by node and dotted name, as in parameter files."""
+        return {
+            "sim_node": flattened(to_mapping(self.sim)),
+            "trajectory_node": flattened(to_mapping(self.trajectory)),
+            "learner_node": flattened(to_mapping(self.learner)),
+        }
+
+
+def node_parameters(
+    settings: RunSettings,
+    seed: int,
+    *,
+    checkpoint_file: str = "",
+    max_episodes: int = 0,
+    publish_every_ticks: int = 1,
+    pace: str = "lockstep",
+    frozen: bool = False,
+    timeout_s: float = 5.0,
+    listen_s: float = 1.5,
+) -> NodeParameters:
+    """Return the settings of the three nodes.
+
+    Args:
+        settings: of the whole run.
+        seed: of every random draw.
+        checkpoint_file: where the learner keeps its session; empty: nowhere.
+        max_episodes: learning episodes after which the learner stops; 0: never.
+        publish_every_ticks: 1 publishes the 500 Hz topics in full.
+        pace: lockstep or realtime.
+        frozen: walk greedily, learn nothing.
+        timeout_s: silence of a peer after which a walk is given up.
+        listen_s: how long the learner listens for another one first.
+    """
+    return NodeParameters(
+        sim=SimNodeSettings(
+            sim=settings.sim,
+            seed=seed,
+            segment_rows=TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS,
+            publish_every_ticks=publish_every_ticks,
+            pace=pace,
+            timeout_s=timeout_s,
+        ),
+        trajectory=TrajectorySettings(
+            gait=settings.gait,
+            correction=settings.correction,
+            correction_limit_m=settings.learner.action.limit_m,
+            look_ahead_ticks=_LOOK_AHEAD_TICKS,
+        ),
+        learner=LearnerNodeSettings(
+            learner=settings.learner,
+            seed=seed,
+            walk_ticks=microseconds(settings.gait.duration_s) // CONTROL_PERIOD_US,
+            checkpoint_file=checkpoint_file,
+            max_episodes=max_episodes,
+            frozen=frozen,
+            listen_s=listen_s,
+            run_settings=json.dumps(to_mapping(settings)),
+        ),
+    )

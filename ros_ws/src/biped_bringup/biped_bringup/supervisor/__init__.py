@@ -1,0 +1,1 @@
+"""Starts the nodes as processes, watches them, restarts them, and ends them all."""

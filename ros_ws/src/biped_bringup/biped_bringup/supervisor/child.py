@@ -1,0 +1,115 @@
+"""One node as a child process: its start, its log, its end."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import IO
+
+_PR_SET_PDEATHSIG = 1
+
+
+class Child:
+    """A node's process; started, watched and ended by the supervisor."""
+
+    def __init__(
+        self,
+        name: str,
+        parameter_file: Path,
+        environment: Mapping[str, str],
+        log_file: Path,
+        show: Callable[[str, str], None],
+    ) -> None:
+        """Prepare; start nothing yet.
+
+        Args:
+            name: of the node and of its package.
+            parameter_file: YAML of its ROS parameters.
+            environment: of the process.
+            log_file: takes everything that the process prints.
+            show: told (name, line) of everything that the process prints.
+        """
+        self.name = name
+        self.starts = 0
+        self._command = [
+            sys.executable, "-m", f"{name}.node",
+            "--ros-args", "--params-file", str(parameter_file),
+        ]  # fmt: skip
+        self._environment = dict(environment)
+        self._log_file = log_file
+        self._show = show
+        self._process: subprocess.Popen[str] | None = None
+        self._reader: threading.Thread | None = None
+
+    @property
+    def pid(self) -> int | None:
+        """Process id while it runs."""
+        return self._process.pid if self.running and self._process else None
+
+    @property
+    def running(self) -> bool:
+        """Whether the process is there."""
+        return self._process is not None and self._process.poll() is None
+
+    @property
+    def exit_status(self) -> int | None:
+        """How the last process ended: its status, or minus the signal."""
+        return None if self._process is None else self._process.poll()
+
+    def start(self) -> None:
+        """Start the process, in a session of its own: Ctrl-C is the supervisor's."""
+        self.starts += 1
+        self._process = subprocess.Popen(
+            self._command,
+            env=self._environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            start_new_session=True,
+            preexec_fn=_die_with_parent,
+        )
+        assert self._process.stdout is not None
+        self._reader = threading.Thread(
+            target=self._read, args=(self._process.stdout,), daemon=True
+        )
+        self._reader.start()
+
+    def signal(self, number: signal.Signals) -> None:
+        """Send a signal, if there is a process to take it."""
+        if self.running and self._process is not None:
+            self._process.send_signal(number)
+
+    def wait(self, timeout_s: float) -> bool:
+        """Wait for the process to end; return whether it did."""
+        if self._process is None:
+            return True
+        try:
+            self._process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            return False
+        if self._reader is not None:
+            self._reader.join(timeout_s)
+        return True
+
+    def _read(self, stream: IO[str]) -> None:
+        with self._log_file.open("a") as log, stream:
+            for line in stream:
+                log.write(line)
+                log.flush()
+                self._show(self.name, line.rstrip())
+
+
+def _die_with_parent() -> None:
+    """Have the kernel end this process when the supervisor is gone, however it went."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+    # The supervisor may have died before the line above.
+    if os.getppid() == 1:
+        os._exit(1)

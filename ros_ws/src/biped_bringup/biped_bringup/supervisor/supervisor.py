@@ -1,0 +1,157 @@
+"""The supervisor: an ordered start, a watchful middle, an ordered end.
+
+What failures do:
+    a node dies: it is started again after a growing pause; the fifth time within ten
+        seconds everything is ended, and the exit status says so.
+    a node lives but has said nothing for a while: it is killed, and counts as died.
+    SIGINT, SIGTERM: the nodes are asked to end, last started first; who does not, is
+        terminated and then killed.
+    the supervisor is killed: the kernel terminates the nodes.
+"""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from biped_bringup.supervisor.child import Child
+from biped_bringup.supervisor.graph_watch import GraphWatch
+from biped_bringup.supervisor.restart_budget import RestartBudget
+
+# The robot comes last: when it offers its first walk, everybody listens.
+START_ORDER = ("trajectory_node", "learner_node", "sim_node")
+_TURN_S = 0.1
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How long the supervisor waits for what [s]."""
+
+    ready_s: float = 60.0
+    """For a node to appear on the graph; the first start compiles."""
+    silence_s: float = 15.0
+    """For a node that is on the graph to speak."""
+    end_s: float = 5.0
+    """For a node to end when asked, and again when terminated."""
+
+
+class NodeFailureError(Exception):
+    """A node could not be kept running; the text says which, and why."""
+
+
+class Supervisor:
+    """Keeps the nodes of one run alive until it is done or told to stop."""
+
+    def __init__(
+        self,
+        parameters: Mapping[str, Mapping[str, Any]],
+        environment: Mapping[str, str],
+        folder: Path,
+        show: Callable[[str, str], None],
+        patience: Patience | None = None,
+    ) -> None:
+        """Write the parameter files and join the graph.
+
+        Args:
+            parameters: of the nodes to start, by node.
+            environment: of their processes.
+            folder: for parameter files and logs.
+            show: told (who, line) of everything there is to tell.
+            patience: how long to wait for what.
+        """
+        self.children: dict[str, Child] = {}
+        self._budgets: dict[str, RestartBudget] = {}
+        self._show = show
+        self._patience = patience or Patience()
+        for name in START_ORDER:
+            if name in parameters:
+                file = folder / f"{name}.yaml"
+                content = {name: {"ros__parameters": dict(parameters[name])}}
+                file.write_text(yaml.safe_dump(content))
+                log = folder / f"{name}.log"
+                self.children[name] = Child(name, file, environment, log, show)
+                self._budgets[name] = RestartBudget()
+        self.graph = GraphWatch(int(environment["ROS_DOMAIN_ID"]))
+
+    def run(self, done: Callable[[], bool], stopped: Callable[[], bool]) -> None:
+        """Start the nodes and keep them running until `done` or `stopped`.
+
+        Raises:
+            NodeFailureError: a node could not be started or kept running.
+        """
+        for child in self.children.values():
+            if stopped():
+                return
+            self._start(child, stopped)
+        while not (done() or stopped()):
+            self.graph.spin(_TURN_S)
+            for child in self.children.values():
+                self._look_after(child, stopped)
+
+    def stop(self) -> None:
+        """End all nodes, last started first, and leave the graph."""
+        children = list(self.children.values())[::-1]
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            for child in children:
+                if child.running:
+                    if number is not signal.SIGINT:
+                        self._show("supervisor", f"{child.name} gets {number.name}")
+                    child.signal(number)
+                    # One that was stopped cannot end before it is let go on.
+                    child.signal(signal.SIGCONT)
+                    child.wait(self._patience.end_s)
+        self.graph.close()
+
+    def _start(self, child: Child, stopped: Callable[[], bool]) -> None:
+        self.graph.forget(child.name)
+        child.start()
+        end = time.monotonic() + self._patience.ready_s
+        while not self.graph.has_node(child.name):
+            self.graph.spin(_TURN_S)
+            if stopped():
+                return
+            if not child.running:
+                self._restart(child, stopped)
+                return
+            if time.monotonic() > end:
+                raise NodeFailureError(
+                    f"{child.name} did not appear on the graph within "
+                    f"{self._patience.ready_s:g} s"
+                )
+        self._show("supervisor", f"{child.name} is ready (process {child.pid})")
+
+    def _look_after(self, child: Child, stopped: Callable[[], bool]) -> None:
+        if not child.running:
+            if not stopped():
+                self._restart(child, stopped)
+            return
+        heard = self.graph.heard_at.get(child.name)
+        if heard is not None and time.monotonic() - heard > self._patience.silence_s:
+            self._show(
+                "supervisor",
+                f"{child.name} has been silent for {self._patience.silence_s:g} s: "
+                "it is killed",
+            )
+            child.signal(signal.SIGKILL)
+            child.wait(self._patience.end_s)
+
+    def _restart(self, child: Child, stopped: Callable[[], bool]) -> None:
+        status = child.exit_status
+        delay_s = self._budgets[child.name].failed(time.monotonic())
+        if delay_s is None:
+            raise NodeFailureError(
+                f"{child.name} died too often (last exit status {status}); "
+                "its log says why"
+            )
+        self._show(
+            "supervisor",
+            f"{child.name} died (exit status {status}), starts again in {delay_s:g} s",
+        )
+        self.graph.spin(delay_s)
+        self._start(child, stopped)

@@ -1,0 +1,233 @@
+"""The simulated robot on ROS: waist segments in, observations and 500 Hz topics out."""
+
+from __future__ import annotations
+
+import sys
+import time
+import uuid
+from typing import Any
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus
+from std_srvs.srv import SetBool, Trigger
+
+from biped_description.urdf import urdf_path
+from msgs_json import topics
+from msgs_json.end_cause import EndCause
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.observation import Observation
+from msgs_json.refusal import RefusedMessageError
+from msgs_json.ros.cdr import string_message, string_text
+from msgs_json.ros.guarded import GuardedNode
+from msgs_json.ros.messages import segment_of, segment_template
+from msgs_json.ros.parameters import declared_settings
+from msgs_json.ros.running import run_node
+from msgs_json.seeds import robot_stream
+from msgs_json.segment import WaistSegment
+from msgs_json.wire import MalformedMessageError, decode, encode
+from sim_node.biped import SimulatedBiped
+from sim_node.pilot import Pilot
+from sim_node.realtime import RealtimeLoop
+from sim_node.settings import SimNodeSettings
+from sim_node.tick_publisher import TickPublisher
+
+NAME = "sim_node"
+_WATCH_PERIOD_S = 0.1
+# The learner and the trajectory want every observation.
+_LISTENERS = 2
+
+
+class SimNode(GuardedNode):
+    """Lockstep: the robot walks a segment when it comes, as fast as all can."""
+
+    def __init__(self, **options: Any) -> None:
+        """Wait for the stance, then stand and begin the first walk.
+
+        Args:
+            options: of `rclpy.node.Node`, such as `parameter_overrides`.
+        """
+        super().__init__(NAME, **options)
+        settings = declared_settings(self, SimNodeSettings)
+        self._settings = settings
+        self._rng = np.random.default_rng(robot_stream(settings.seed))
+        self._pilot: Pilot | None = None
+        self._loop: RealtimeLoop | None = None
+        self._paused = False
+        self._held: bytes | None = None
+        self._heard = time.monotonic()
+        self._ticks = TickPublisher(self, settings.publish_every_ticks)
+        self._observations = self.publisher(topics.OBSERVATION)
+        description = self.publisher(topics.ROBOT_DESCRIPTION)
+        description.publish(string_message(urdf_path().read_text()))
+        self._stance_template = segment_template(rows=1)
+        self._template = segment_template(settings.segment_rows)
+        self.listen(topics.STANCE, self._on_stance)
+        self.listen(topics.WAIST_REFERENCE, self._on_segment)
+        self.listen(topics.EPISODE, self._on_episode)
+        self.create_timer(_WATCH_PERIOD_S, self._watch_peers)
+        self.create_service(SetBool, f"{NAME}/pause", self._on_pause)
+        self.create_service(Trigger, f"{NAME}/reset", self._on_reset)
+
+    def close(self) -> None:
+        """End the world."""
+        if self._loop is not None:
+            self._loop.stop()
+        if self._pilot is not None:
+            self._pilot.biped.close()
+
+    def figures(self) -> dict[str, str]:
+        """Return punctuality, in real time."""
+        return {} if self._loop is None else self._loop.punctuality.figures()
+
+    # -- messages ------------------------------------------------------------------
+
+    def _on_stance(self, message: bytes) -> None:
+        read = self._stance_template.read(message)
+        if read is None:
+            raise MalformedMessageError("stance: not a waist reference of one row")
+        if self._pilot is None:
+            biped = SimulatedBiped(
+                self._settings.sim,
+                segment_of(read[0]),
+                self._rng,
+                self._ticks.publish,
+                name=uuid.uuid4().hex[:8],
+            )
+            self._pilot = Pilot(biped)
+            if self._settings.pace == "realtime":
+                self._loop = RealtimeLoop(
+                    self._pilot, self._settings.realtime_factor, self._publish
+                )
+                self._loop.start()
+
+    def _on_segment(self, message: bytes) -> None:
+        if self._paused and self._loop is None:
+            self._held = message
+            return
+        read = self._template.read(message)
+        if read is None:
+            raise MalformedMessageError(
+                f"waist reference: not {self._settings.segment_rows} rows of this form"
+            )
+        if self._pilot is None:
+            raise RefusedMessageError("no stance is known yet")
+        values, clock_ticks = read
+        segment = segment_of(values)
+        if self._loop is None:
+            self._publish(self._pilot.execute(clock_ticks, segment))
+        else:
+            self._loop.request(lambda: self._follow(clock_ticks, segment))
+
+    def _follow(self, clock_ticks: int, segment: WaistSegment) -> None:
+        """Take over a segment, in the thread of the real-time loop."""
+        if self._pilot is None or self._loop is None:
+            return
+        try:
+            self._pilot.follow(clock_ticks, segment)
+        except RefusedMessageError as error:
+            self.refuse(topics.WAIST_REFERENCE, "refused", error)
+        else:
+            self._heard = time.monotonic()
+            self._loop.segment_arrived()
+
+    def _on_episode(self, message: bytes) -> None:
+        result = decode(EpisodeResult, string_text(message))
+        if self._pilot is None:
+            raise RefusedMessageError("no walk has begun yet")
+        self._pilot.check_result(result)
+        self._begin()
+
+    def _begin(self) -> None:
+        if self._loop is not None:
+            self._loop.request(self._loop.begin)
+        elif self._pilot is not None:
+            self._publish(self._pilot.begin())
+
+    def _end(self, cause: EndCause) -> bool:
+        """End the walk from outside; return whether one was under way."""
+        if self._pilot is None or self._pilot.biped.end_cause is not None:
+            return False
+        if self._loop is not None:
+            loop = self._loop
+            loop.request(lambda: loop.end(cause))
+            return True
+        observation = self._pilot.end(cause)
+        if observation is not None:
+            self._publish(observation)
+        return observation is not None
+
+    # -- peers ---------------------------------------------------------------------
+
+    def _watch_peers(self) -> None:
+        if self._pilot is None or self._paused:
+            return
+        if self._pilot.walks == 0:
+            # What is published before all are connected would be lost.
+            if self._connected():
+                self._begin()
+            return
+        silent_s = time.monotonic() - self._heard
+        if silent_s < self._settings.timeout_s:
+            return
+        peer = self._silent_peer()
+        text = f"{peer} has been silent for {silent_s:.1f} s; the walk is given up"
+        self.get_logger().error(text)
+        self.remark(DiagnosticStatus.ERROR, "silent peer", text)
+        # A walk cut short is reported first; if nobody reacts, a new one is offered.
+        self._heard = time.monotonic()
+        if not self._end(EndCause.PEER_SILENT):
+            self._begin()
+
+    def _connected(self) -> bool:
+        listeners = self._observations.get_subscription_count()
+        return listeners >= _LISTENERS and all(
+            self.count_publishers(topic.name) > 0
+            for topic in (topics.WAIST_REFERENCE, topics.CORRECTION, topics.EPISODE)
+        )
+
+    def _silent_peer(self) -> str:
+        for topic, peer in (
+            (topics.CORRECTION, "learner_node"),
+            (topics.WAIST_REFERENCE, "trajectory_node"),
+        ):
+            if self.count_publishers(topic.name) == 0:
+                return f"{peer} (not on the graph)"
+        return "learner_node or trajectory_node"
+
+    def _publish(self, observation: Observation) -> None:
+        if self._loop is None:
+            self._heard = time.monotonic()
+        self._observations.publish(string_message(encode(observation)))
+
+    # -- services ------------------------------------------------------------------
+
+    def _on_pause(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        self._paused = request.data
+        self._heard = time.monotonic()
+        if self._loop is not None:
+            loop, paused = self._loop, request.data
+            loop.request(lambda: loop.pause(paused))
+        held, self._held = self._held, None
+        if not self._paused and held is not None:
+            self._on_segment(held)
+        response.success = True
+        response.message = "paused" if request.data else "walking"
+        return response
+
+    def _on_reset(
+        self, _: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        response.success = self._end(EndCause.RESET)
+        response.message = "walk ended" if response.success else "no walk to end"
+        return response
+
+
+def main() -> int:
+    """Run the node as a process."""
+    return run_node(SimNode)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,91 @@
+"""Walks after walks for whoever guides the robot: what to accept, when to begin anew.
+
+Pure bookkeeping around the robot; the node brings the messages and the time.
+"""
+
+from __future__ import annotations
+
+from msgs_json.end_cause import EndCause
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.observation import Observation
+from msgs_json.refusal import RefusedMessageError
+from msgs_json.segment import WaistSegment
+from sim_node.biped import SimulatedBiped
+
+
+class Pilot:
+    """Guides one robot by segments, in lockstep or ahead of real time."""
+
+    def __init__(self, biped: SimulatedBiped) -> None:
+        """Stand, and wait for `begin`."""
+        self.biped = biped
+        self.walks = 0
+        self.observation: Observation | None = None
+        """The last one given out."""
+
+    def begin(self) -> Observation:
+        """Begin the next walk."""
+        self.walks += 1
+        self.observation = self.biped.begin_walk(self.walks)
+        return self.observation
+
+    def execute(self, clock_ticks: int, segment: WaistSegment) -> Observation:
+        """Walk a segment to its end (lockstep).
+
+        Args:
+            clock_ticks: time of the observation that the segment answers.
+            segment: the references.
+
+        Raises:
+            RefusedMessageError: the segment is not for now.
+        """
+        self._check(clock_ticks, segment)
+        try:
+            self.observation = self.biped.execute(segment)
+        except ValueError as error:
+            raise RefusedMessageError(str(error)) from None
+        return self.observation
+
+    def follow(self, clock_ticks: int, segment: WaistSegment) -> None:
+        """Take over a segment while walking on (real time).
+
+        Raises:
+            RefusedMessageError: the segment is not for now.
+        """
+        self._check(clock_ticks, segment)
+        try:
+            self.biped.follow(segment)
+        except ValueError as error:
+            raise RefusedMessageError(str(error)) from None
+
+    def observe(self) -> Observation:
+        """Sum up what was walked since the last observation (real time)."""
+        self.observation = self.biped.observe()
+        return self.observation
+
+    def end(self, cause: EndCause) -> Observation | None:
+        """End the walk from outside; return the observation that tells so, if any."""
+        if self.observation is None or self.observation.end_cause is not None:
+            return None
+        self.biped.end(cause)
+        return self.observe()
+
+    def check_result(self, result: EpisodeResult) -> None:
+        """Refuse a result that is not about the present walk.
+
+        Raises:
+            RefusedMessageError: it is about another one.
+        """
+        if result.episode != self.walks:
+            raise RefusedMessageError(
+                f"result of walk {result.episode}, the present one is {self.walks}"
+            )
+
+    def _check(self, clock_ticks: int, segment: WaistSegment) -> None:
+        expected = None if self.observation is None else self.observation.clock_ticks
+        if clock_ticks != expected:
+            raise RefusedMessageError(
+                f"segment for clock tick {clock_ticks}, the robot waits at {expected}"
+            )
+        if self.biped.end_cause is not None:
+            raise RefusedMessageError(f"the walk is over: {self.biped.end_cause}")

@@ -1,0 +1,163 @@
+"""Walking in real time: one thread, absolute deadlines, no waiting for anybody.
+
+A segment is taken over as soon as it is there. One that is not there at the end of its
+learning tick is replaced by the look-ahead of the last one, and counted as a missed
+deadline. When the look-ahead is used up, the robot is held and the walk ends.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from queue import Empty, SimpleQueue
+
+import numpy as np
+
+from msgs_json.end_cause import EndCause
+from msgs_json.observation import Observation
+from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK
+from sim_node.pilot import Pilot
+
+_REMEMBERED_TICKS = 10_000
+
+
+class Punctuality:
+    """Lateness of control ticks, latency of segments, and deadlines missed."""
+
+    def __init__(self) -> None:
+        """Start with nothing measured."""
+        self.missed_deadlines = 0
+        self.ticks = 0
+        self._lateness_ns: deque[int] = deque(maxlen=_REMEMBERED_TICKS)
+        self._latency_ns: deque[int] = deque(maxlen=_REMEMBERED_TICKS)
+
+    def tick(self, lateness_ns: int) -> None:
+        """Take note of a control tick."""
+        self.ticks += 1
+        self._lateness_ns.append(lateness_ns)
+
+    def segment(self, latency_ns: int) -> None:
+        """Take note of the time from an observation to its segment."""
+        self._latency_ns.append(latency_ns)
+
+    def figures(self) -> dict[str, str]:
+        """Return percentiles of the recent past, for diagnostics."""
+        figures = {
+            "control ticks": str(self.ticks),
+            "missed 20 ms deadlines": str(self.missed_deadlines),
+        }
+        for name, values in (
+            ("control tick lateness", self._lateness_ns),
+            ("observation to waist", self._latency_ns),
+        ):
+            if values:
+                p50, p99, worst = np.percentile(np.array(values), (50, 99, 100)) / 1e6
+                figures[f"{name} p50 [ms]"] = f"{p50:.3f}"
+                figures[f"{name} p99 [ms]"] = f"{p99:.3f}"
+                figures[f"{name} max [ms]"] = f"{worst:.3f}"
+        return figures
+
+
+class RealtimeLoop:
+    """Drives a pilot at 500 Hz; all that touches the robot happens in its thread."""
+
+    def __init__(
+        self, pilot: Pilot, factor: float, publish: Callable[[Observation], None]
+    ) -> None:
+        """Prepare the thread.
+
+        Args:
+            pilot: of the robot.
+            factor: simulated seconds per second.
+            publish: gives out an observation.
+        """
+        self.punctuality = Punctuality()
+        self._pilot = pilot
+        self._publish = publish
+        self._period_ns = round(CONTROL_PERIOD_US * 1000 / factor)
+        self._requests: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._stopping = threading.Event()
+        self._paused = False
+        self._observed_ns = 0
+        self._answered = False
+        self._thread = threading.Thread(target=self._run, name="realtime", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread; the robot stands until the first walk is begun."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread."""
+        self._stopping.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def request(self, action: Callable[[], None]) -> None:
+        """Have something done between two control ticks, in the loop's thread."""
+        self._requests.put(action)
+
+    # Requests: call these in the loop's thread only.
+
+    def begin(self) -> None:
+        """Begin the next walk."""
+        self._give_out(self._pilot.begin())
+
+    def segment_arrived(self) -> None:
+        """Take note that the last observation has been answered."""
+        self._answered = True
+        self.punctuality.segment(time.monotonic_ns() - self._observed_ns)
+
+    def end(self, cause: EndCause) -> None:
+        """End the walk from outside."""
+        observation = self._pilot.end(cause)
+        if observation is not None:
+            self._give_out(observation)
+
+    def pause(self, paused: bool) -> None:
+        """Stop or go on between two ticks."""
+        self._paused = paused
+
+    def _run(self) -> None:
+        deadline_ns = time.monotonic_ns()
+        while not self._stopping.is_set():
+            deadline_ns += self._period_ns
+            wait_ns = deadline_ns - time.monotonic_ns()
+            if wait_ns > 0:
+                time.sleep(wait_ns * 1e-9)
+            lateness_ns = time.monotonic_ns() - deadline_ns
+            self._serve_requests()
+            if self._paused or self._pilot.observation is None:
+                continue
+            if self._pilot.biped.end_cause is None:
+                self.punctuality.tick(max(0, lateness_ns))
+                self._tick()
+
+    def _serve_requests(self) -> None:
+        while True:
+            try:
+                action = self._requests.get_nowait()
+            except Empty:
+                return
+            action()
+
+    def _tick(self) -> None:
+        biped = self._pilot.biped
+        if biped.ticks_ahead < 1:
+            # Before the first segment of a walk the robot just stands and waits.
+            if biped.control_tick > 0:
+                self.punctuality.missed_deadlines += 1
+                self.end(EndCause.PEER_SILENT)
+            return
+        biped.advance()
+        over = biped.end_cause is not None
+        if over or biped.control_tick % TICKS_PER_LEARNING_TICK == 0:
+            if not self._answered:
+                self.punctuality.missed_deadlines += 1
+            self._give_out(self._pilot.observe())
+
+    def _give_out(self, observation: Observation) -> None:
+        self._observed_ns = time.monotonic_ns()
+        self._answered = observation.end_cause is not None
+        self._publish(observation)

@@ -1,0 +1,143 @@
+"""Whatever comes over the graph, robot and memory see sound messages only."""
+
+import math
+
+import numpy as np
+import pytest
+import rclpy
+from geometry_msgs.msg import Vector3Stamped
+from std_msgs.msg import String
+
+from biped_bringup.node_parameters import node_parameters
+from biped_bringup.one_executor import OneExecutor
+from biped_bringup.run_settings import load_settings
+from msgs_json import topics
+from msgs_json.ros.guarded import message_type
+from msgs_json.ros.messages import segment_template, segment_values
+from msgs_json.ros.qos import qos_profile
+from trajectory_node.waist_reference import WaistReference
+
+SEED = 5
+EPISODES = 8
+MESSAGES = 1000
+TIMEOUT_S = 60.0
+
+
+def learned(domain, disturb=None):
+    """Learn some episodes on a graph; return memory and trajectory hashes."""
+    parameters = node_parameters(
+        load_settings("quick"),
+        SEED,
+        max_episodes=EPISODES,
+        publish_every_ticks=10,
+        listen_s=0.0,
+    )
+    with OneExecutor(parameters, domain) as graph:
+        session = graph.learner.session
+        if disturb is not None:
+            assert graph.spin_until(lambda: session.episodes >= 1, TIMEOUT_S)
+            disturb(graph)
+        assert graph.spin_until(lambda: session.episodes >= EPISODES, TIMEOUT_S)
+        return session.learner.memory_sha256(), session.tally.trajectories_sha256
+
+
+@pytest.fixture(scope="module")
+def undisturbed():
+    """Return the hashes of a run that nobody interfered with."""
+    return learned(39)
+
+
+def strings(kind):
+    """Return texts that are no payload of any kind."""
+    return {
+        "empty": "",
+        "no JSON": "{",
+        "another thing": '{"version": 1, "legs": 3}',
+        "NaN": '{"version": 1, "control_tick": NaN}',
+        "another version": '{"version": 99}',
+        "garbage": "\u2603" * 40,
+    }[kind]
+
+
+def correction(kind, stamp_s):
+    """Return a correction that must not be followed."""
+    message = Vector3Stamped()
+    message.header.frame_id = "intruder"
+    message.header.stamp.sec = stamp_s
+    message.vector.x = {"NaN": math.nan, "infinite": math.inf}.get(kind, 0.0)
+    if kind == "out of range":
+        message.vector.x = 1.0
+    if kind == "between ticks":
+        message.header.stamp.nanosec = 1
+    return message
+
+
+def flood(topic, messages):
+    """Return a disturbance that publishes these messages from a node of its own."""
+
+    def disturb(graph):
+        node = rclpy.create_node("intruder", context=graph.sim.context)
+        try:
+            publisher = node.create_publisher(
+                message_type(topic), topic.name, qos_profile(topic)
+            )
+            assert graph.spin_until(
+                lambda: publisher.get_subscription_count() > 0, TIMEOUT_S
+            )
+            publish_all(graph, topic, publisher, messages)
+        finally:
+            node.destroy_node()
+
+    return disturb
+
+
+def publish_all(graph, topic, publisher, messages):
+    """Publish a thousand messages and see them all refused."""
+    for i in range(MESSAGES):
+        publisher.publish(messages[i % len(messages)])
+        # A short history would overwrite what is not taken at once.
+        if i % min(20, topic.depth) == 0:
+            taken = not_acted_on(graph, topic)
+            graph.spin_until(
+                lambda taken=taken: not_acted_on(graph, topic) > taken, 0.1
+            )
+    assert graph.spin_until(lambda: not_acted_on(graph, topic) >= MESSAGES, TIMEOUT_S)
+
+
+def not_acted_on(graph, topic):
+    """Return how many messages of a topic were refused or malformed so far."""
+    return sum(
+        node.counts[f"{topic.name} {kind}"]
+        for node in graph.nodes
+        for kind in ("refused", "malformed")
+    )
+
+
+@pytest.mark.parametrize(
+    "topic", [topics.OBSERVATION, topics.EPISODE, topics.LEARNER_STATUS]
+)
+def test_malformed_texts_change_nothing(domain, undisturbed, topic):
+    kinds = ("empty", "no JSON", "another thing", "NaN", "another version", "garbage")
+    messages = [String(data=strings(kind)) for kind in kinds]
+    assert learned(domain, flood(topic, messages)) == undisturbed
+
+
+def test_corrections_that_are_not_for_now_change_nothing(domain, undisturbed):
+    kinds = ("NaN", "infinite", "out of range", "between ticks", "stale")
+    messages = [correction(kind, stamp_s=0) for kind in kinds]
+    assert learned(domain, flood(topics.CORRECTION, messages)) == undisturbed
+
+
+@pytest.mark.parametrize("topic", [topics.WAIST_REFERENCE, topics.STANCE])
+def test_segments_of_another_form_change_nothing(domain, undisturbed, topic):
+    kind = message_type(topic)
+    messages = [kind(), kind(joint_names=["waist"])]
+    assert learned(domain, flood(topic, messages)) == undisturbed
+
+
+def test_a_segment_of_the_past_is_never_walked_again(domain, undisturbed):
+    settings = load_settings("quick")
+    reference = WaistReference(settings.gait, settings.correction, look_ahead_ticks=50)
+    values = segment_values(reference.segment(np.zeros(2)))
+    message = segment_template(reference.rows).fill(values, clock_ticks=1)
+    assert learned(domain, flood(topics.WAIST_REFERENCE, [message])) == undisturbed

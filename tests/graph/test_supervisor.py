@@ -1,0 +1,177 @@
+"""Processes that die, stall or are not wanted: the run goes on, or ends in order."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from biped_bringup.node_parameters import node_parameters
+from biped_bringup.run_settings import load_settings
+from biped_bringup.supervisor.environment import node_environment
+from biped_bringup.supervisor.supervisor import NodeFailureError, Supervisor
+from learner_node.checkpoint import read_checkpoint
+
+SEED = 5
+TIMEOUT_S = 90.0
+
+
+def parameters(folder, **changes):
+    """Return parameters of nodes that notice silence soon."""
+    return node_parameters(
+        load_settings("quick"),
+        SEED,
+        checkpoint_file=str(folder / "memory.npz"),
+        publish_every_ticks=10,
+        timeout_s=1.0,
+        listen_s=0.5,
+        **changes,
+    ).flat()
+
+
+class Graph:
+    """A supervisor in a thread of the test."""
+
+    def __init__(self, folder, domain, values=None):
+        self.lines = []
+        self.supervisor = Supervisor(
+            values or parameters(folder),
+            node_environment(domain, "LOCALHOST"),
+            folder,
+            lambda who, line: self.lines.append(f"[{who}] {line}"),
+        )
+        self.failure = None
+        self._stopped = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        try:
+            self.supervisor.run(lambda: False, self._stopped.is_set)
+        except NodeFailureError as error:
+            self.failure = error
+
+    def wait_for(self, condition):
+        """Return whether the condition came true in time."""
+        end = time.monotonic() + TIMEOUT_S
+        while time.monotonic() < end and not condition():
+            time.sleep(0.05)
+        return condition()
+
+    def walks(self, more):
+        """Return whether so many more walks of the learner ended in time."""
+        before = self.supervisor.graph.results
+        return self.wait_for(lambda: self.supervisor.graph.results >= before + more)
+
+    def stop(self):
+        """End everything."""
+        self._stopped.set()
+        self._thread.join()
+        self.supervisor.stop()
+
+
+@pytest.fixture
+def graph(tmp_path, domain):
+    """Return a graph on which walks are being walked."""
+    graph = Graph(tmp_path, domain)
+    try:
+        assert graph.walks(2)
+        yield graph
+    finally:
+        graph.stop()
+
+
+@pytest.mark.parametrize("name", ["sim_node", "trajectory_node", "learner_node"])
+def test_after_a_node_was_killed_walks_go_on(graph, name):
+    child = graph.supervisor.children[name]
+    os.kill(child.pid, signal.SIGKILL)
+    assert graph.wait_for(lambda: child.starts == 2)
+    assert graph.walks(3)
+
+
+def test_a_killed_learner_goes_on_from_its_checkpoint(graph, tmp_path):
+    memory = tmp_path / "memory.npz"
+    assert graph.wait_for(memory.exists)
+    os.kill(graph.supervisor.children["learner_node"].pid, signal.SIGKILL)
+    saved = read_checkpoint(memory)[1]["memory/episode"]
+    graph.supervisor.graph.status = None
+    assert graph.wait_for(lambda: graph.supervisor.graph.status is not None)
+    assert graph.supervisor.graph.status.episodes >= saved
+
+
+def test_a_learner_that_stalls_for_two_seconds_is_not_restarted(graph):
+    child = graph.supervisor.children["learner_node"]
+    os.kill(child.pid, signal.SIGSTOP)
+    time.sleep(2.0)
+    os.kill(child.pid, signal.SIGCONT)
+    assert graph.walks(3)
+    assert child.starts == 1
+
+
+def test_the_silent_peer_is_reported(graph):
+    child = graph.supervisor.children["learner_node"]
+    os.kill(child.pid, signal.SIGSTOP)
+    reported = graph.wait_for(lambda: any("silent" in line for line in graph.lines))
+    os.kill(child.pid, signal.SIGCONT)
+    assert reported
+
+
+def test_a_second_learner_is_refused(graph, processes, tmp_path):
+    folder = tmp_path / "second"
+    folder.mkdir()
+    second = processes("learner_node.node", parameters(folder)["learner_node"])
+    assert second.wait(TIMEOUT_S) == 4
+    assert graph.walks(2)
+
+
+def test_a_node_that_keeps_dying_ends_the_run(tmp_path, domain):
+    values = parameters(tmp_path)
+    values["trajectory_node"]["gait.step_length_m"] = 0.45
+    graph = Graph(tmp_path, domain, values)
+    try:
+        assert graph.wait_for(lambda: graph.failure is not None)
+        assert "trajectory_node died too often" in str(graph.failure)
+    finally:
+        graph.stop()
+
+
+def test_in_real_time_a_learner_that_stalls_does_not_stop_the_robot(tmp_path, domain):
+    graph = Graph(tmp_path, domain, parameters(tmp_path, pace="realtime"))
+    try:
+        assert graph.walks(1)
+        child = graph.supervisor.children["learner_node"]
+        os.kill(child.pid, signal.SIGSTOP)
+        time.sleep(2.0)
+        os.kill(child.pid, signal.SIGCONT)
+        assert graph.walks(2)
+        assert child.starts == 1
+    finally:
+        graph.stop()
+
+
+@pytest.mark.parametrize("after_s", [0.3, 1.0, 2.0, 4.0, 8.0])
+def test_ctrl_c_ends_all_at_every_stage_of_the_start(tmp_path, after_s):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "biped_bringup.cli.main", "up", "--preset", "quick",
+         "--no-view", "--out", str(tmp_path)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )  # fmt: skip
+    time.sleep(after_s)
+    process.send_signal(signal.SIGINT)
+    status = process.wait(TIMEOUT_S)
+    # Before Python runs the program's own code, the signal itself ends it.
+    assert status in (130, -signal.SIGINT)
+    assert not node_processes(tmp_path)
+
+
+def node_processes(folder):
+    """Return command lines of processes that were started with files of this folder."""
+    listing = subprocess.run(
+        ["ps", "-eo", "args"], capture_output=True, text=True, check=True
+    )
+    return [line for line in listing.stdout.splitlines() if f"{folder}/" in line]

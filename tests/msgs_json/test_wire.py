@@ -1,0 +1,292 @@
+"""JSON on the wire: what goes out comes back, and nothing else is let in."""
+
+import json
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from msgs_json.end_cause import EndCause
+from msgs_json.episode_result import CostTerms, EpisodeResult
+from msgs_json.learner_status import LearnerStatus
+from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.wire import MalformedMessageError, decode, encode
+
+PHASE = PhaseFlags(
+    planned_right_support=True,
+    planned_double_support=False,
+    measured_right_support=True,
+    measured_double_support=False,
+    step_index=2,
+)
+OBSERVATION = Observation(
+    simulation="a1",
+    episode=3,
+    clock_ticks=1040,
+    control_tick=40,
+    phase=PHASE,
+    waist_in_support_foot_m=(0.01, -0.02),
+    zmp_error_m=(0.003, 0.004),
+    waist_acceleration_m_s2=(0.5, -0.5),
+    worst_zmp_error_m=0.005,
+    worst_joint_velocity_rad_s=1.5,
+    zmp_error_integral_m2_s2=1e-7,
+    joint_error_integral_rad2_s=1e-9,
+    torque_integral_n2m2_s=20.0,
+    mean_joint_error_rad=1e-4,
+    mean_joint_velocity_error_rad_s=1e-3,
+    trajectory_sha256="6f1c",
+    end_cause=EndCause.ZMP_ERROR,
+)
+RESULT = EpisodeResult(
+    episode=3,
+    learning=True,
+    end_cause=EndCause.COMPLETED,
+    control_ticks=940,
+    target_ticks=940,
+    peak_zmp_error_m=0.03,
+    peak_joint_velocity_rad_s=2.0,
+    cost=CostTerms(
+        zmp=1.0,
+        final_zmp=0.5,
+        joint_tracking=0.25,
+        joint_torque=0.125,
+        final_joint_position=0.0625,
+        final_joint_velocity=0.03125,
+    ),
+    t_err_estimate=2.1,
+    reward=10.0,
+    subtask=0,
+    trajectory_sha256="6f1c",
+    schedule_complete=False,
+)
+STATUS = LearnerStatus(
+    instance="learner-1",
+    active=True,
+    seed=0,
+    target_time_s=1.88,
+    subtask=0,
+    subtasks=11,
+    successes=3,
+    episodes=40,
+    survival=0.7,
+    basis_states=900,
+    fixed_states=12,
+    penalty_states=80,
+    t_err_estimate=2.1,
+    schedule_complete=False,
+    learned=False,
+    frozen=False,
+    simulated_s=63.2,
+    memory_sha256="0a",
+    trajectory_sha256="6f1c",
+)
+PAYLOADS = (PHASE, OBSERVATION, RESULT, STATUS)
+COUNTS = (
+    (PHASE, ("step_index",)),
+    (OBSERVATION, ("episode", "clock_ticks", "control_tick")),
+    (RESULT, ("episode", "control_ticks", "target_ticks", "subtask")),
+    (
+        STATUS,
+        (
+            "seed",
+            "subtask",
+            "subtasks",
+            "successes",
+            "episodes",
+            "basis_states",
+            "fixed_states",
+            "penalty_states",
+        ),
+    ),
+)
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+
+
+def name_of(payload):
+    return type(payload).__name__
+
+
+EVERY_PAYLOAD = pytest.mark.parametrize("payload", PAYLOADS, ids=name_of)
+# Fields that can be null, by kind of payload.
+NULLABLE = {
+    ("Observation", "end_cause"),
+    ("EpisodeResult", "cost"),
+    ("EpisodeResult", "t_err_estimate"),
+    ("LearnerStatus", "t_err_estimate"),
+}
+OPTIONAL = {("Observation", "end_cause")}
+
+
+def every_field_but(excepted):
+    return pytest.mark.parametrize(
+        ("payload", "field"),
+        [
+            pytest.param(payload, field, id=f"{name_of(payload)}.{field}")
+            for payload in PAYLOADS
+            for field in payload.__struct_fields__
+            if (name_of(payload), field) not in excepted
+        ],
+    )
+
+
+def changed(payload, **fields):
+    """The JSON of a payload with other values in some fields."""
+    return json.dumps(json.loads(encode(payload)) | fields)
+
+
+def without(payload, field):
+    values = json.loads(encode(payload))
+    del values[field]
+    return json.dumps(values)
+
+
+def refusal(payload, text):
+    """What is said when the text is taken for a payload of this kind."""
+    with pytest.raises(MalformedMessageError) as caught:
+        decode(type(payload), text)
+    return str(caught.value)
+
+
+# -- round trip ------------------------------------------------------------------------
+
+
+@EVERY_PAYLOAD
+def test_a_payload_comes_back(payload):
+    assert decode(type(payload), encode(payload)) == payload
+
+
+@EVERY_PAYLOAD
+def test_a_payload_comes_back_from_bytes(payload):
+    assert decode(type(payload), encode(payload).encode()) == payload
+
+
+@EVERY_PAYLOAD
+def test_a_payload_says_its_version(payload):
+    assert json.loads(encode(payload))["version"] == 1
+
+
+@settings(deadline=None, max_examples=200)
+@given(numbers, numbers)
+def test_numbers_come_back_to_the_last_bit(x, y):
+    values = json.loads(encode(OBSERVATION)) | {"zmp_error_m": [x, y]}
+    sent = decode(Observation, json.dumps(values))
+    back = decode(Observation, encode(sent)).zmp_error_m
+    assert [(n, math.copysign(1.0, n)) for n in back] == [
+        (n, math.copysign(1.0, n)) for n in (x, y)
+    ]
+
+
+# -- refusals --------------------------------------------------------------------------
+
+
+@EVERY_PAYLOAD
+def test_the_kind_of_payload_is_named(payload):
+    assert refusal(payload, "{}").startswith(f"{name_of(payload)}: ")
+
+
+@EVERY_PAYLOAD
+@pytest.mark.parametrize("version", [0, 2, "1", None, 1.5, True])
+def test_an_unknown_version_is_refused(payload, version):
+    assert "version" in refusal(payload, changed(payload, version=version))
+
+
+@EVERY_PAYLOAD
+def test_a_missing_version_is_refused(payload):
+    assert "version" in refusal(payload, without(payload, "version"))
+
+
+@every_field_but(OPTIONAL)
+def test_a_missing_field_is_refused(payload, field):
+    assert f"`{field}`" in refusal(payload, without(payload, field))
+
+
+@EVERY_PAYLOAD
+def test_an_unknown_field_is_refused(payload):
+    assert "`mood`" in refusal(payload, changed(payload, mood=1))
+
+
+@every_field_but({})
+def test_a_value_of_the_wrong_type_is_refused(payload, field):
+    assert f"$.{field}" in refusal(payload, changed(payload, **{field: {"a": []}}))
+
+
+@every_field_but(NULLABLE)
+def test_null_where_a_value_must_be_is_refused(payload, field):
+    assert f"$.{field}" in refusal(payload, changed(payload, **{field: None}))
+
+
+@pytest.mark.parametrize("literal", ["NaN", "Infinity", "-Infinity"])
+def test_a_number_that_is_none_is_refused(literal):
+    text = encode(OBSERVATION).replace("20.0", literal)
+    assert "invalid character" in refusal(OBSERVATION, text)
+
+
+def test_a_number_too_large_is_refused():
+    text = encode(OBSERVATION).replace("20.0", "1e999")
+    assert "out of range" in refusal(OBSERVATION, text)
+
+
+def test_a_number_that_is_none_does_not_get_through():
+    values = {f: getattr(OBSERVATION, f) for f in OBSERVATION.__struct_fields__}
+    text = encode(Observation(**values | {"worst_zmp_error_m": math.nan}))
+    assert "$.worst_zmp_error_m" in refusal(OBSERVATION, text)
+
+
+@pytest.mark.parametrize(
+    "field", ["waist_in_support_foot_m", "zmp_error_m", "waist_acceleration_m_s2"]
+)
+@pytest.mark.parametrize("pair", [[], [0.1], [0.1, 0.2, 0.3]], ids=len)
+def test_a_pair_of_another_length_is_refused(field, pair):
+    assert f"$.{field}" in refusal(OBSERVATION, changed(OBSERVATION, **{field: pair}))
+
+
+@pytest.mark.parametrize(
+    ("payload", "field"),
+    [(payload, field) for payload, fields in COUNTS for field in fields],
+)
+@pytest.mark.parametrize("count", [-1, 0.5, "1"])
+def test_a_count_that_is_none_is_refused(payload, field, count):
+    assert f"$.{field}" in refusal(payload, changed(payload, **{field: count}))
+
+
+def test_an_error_inside_another_payload_is_named():
+    phase = json.loads(encode(PHASE)) | {"step_index": -1}
+    text = changed(OBSERVATION, phase=phase)
+    assert "$.phase.step_index" in refusal(OBSERVATION, text)
+
+
+@pytest.mark.parametrize("field", ["planned_right_support", "version"])
+def test_a_field_missing_inside_another_payload_is_named(field):
+    phase = json.loads(encode(PHASE))
+    del phase[field]
+    said = refusal(OBSERVATION, changed(OBSERVATION, phase=phase))
+    assert ("$.phase" in said, field in said) == (True, True)
+
+
+def test_a_cause_that_is_no_word_of_ours_is_refused():
+    assert "$.end_cause" in refusal(
+        OBSERVATION, changed(OBSERVATION, end_cause="bored")
+    )
+
+
+@EVERY_PAYLOAD
+def test_truncated_json_is_refused(payload):
+    text = encode(payload)
+    for end in range(len(text)):
+        assert refusal(payload, text[:end])
+
+
+@EVERY_PAYLOAD
+def test_json_with_something_after_it_is_refused(payload):
+    assert refusal(payload, encode(payload) + "}")
+
+
+@pytest.mark.parametrize("text", ["", "null", "[]", "1", '"a"', "walk", b"\xff\xfe"])
+def test_what_is_no_payload_at_all_is_refused(text):
+    assert refusal(OBSERVATION, text).startswith("Observation: ")
+
+
+def test_one_payload_is_not_taken_for_another():
+    assert refusal(OBSERVATION, encode(RESULT))

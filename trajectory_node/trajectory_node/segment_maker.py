@@ -1,0 +1,106 @@
+"""Joins what the robot observed with what the learner answered into a segment.
+
+Observation and correction of a learning tick come by different ways and in any order.
+They belong together by the time of the simulation's clock that both carry.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from msgs_json.end_cause import EndCause
+from msgs_json.observation import Observation
+from msgs_json.refusal import RefusedMessageError
+from msgs_json.segment import WaistSegment
+from trajectory_node.waist_reference import WaistReference
+
+
+class SegmentMaker:
+    """Follows one simulation and one learner at a time."""
+
+    def __init__(self, reference: WaistReference, limit_m: float) -> None:
+        """Wait for the start of a walk.
+
+        Args:
+            reference: makes the segments.
+            limit_m: largest component of a correction that is accepted [m].
+        """
+        self._reference = reference
+        self._limit_m = limit_m
+        self._observation: Observation | None = None
+        self._answered = True
+        self._early: tuple[str, int, NDArray[np.float64]] | None = None
+        self.learner: str | None = None
+        """The learner that is listened to; others are refused."""
+
+    def observe(self, observation: Observation) -> WaistSegment | None:
+        """Take an observation; return the segment if its correction is here already.
+
+        Raises:
+            RefusedMessageError: the observation is old, or of a walk whose start was
+                not seen, which cannot be continued.
+        """
+        last = self._observation
+        if last is not None and last.simulation == observation.simulation:
+            if observation.clock_ticks <= last.clock_ticks:
+                raise RefusedMessageError(
+                    f"observation of clock tick {observation.clock_ticks} comes after "
+                    f"that of {last.clock_ticks}"
+                )
+        else:
+            self._early = None
+        self._observation = observation
+        self._answered = observation.end_cause is not None
+        if observation.end_cause is EndCause.PEER_SILENT:
+            self.learner = None
+        if self._answered:
+            return None
+        if observation.control_tick == 0:
+            self._reference.reset()
+        elif observation.control_tick != self._reference.tick:
+            self._answered = True
+            raise RefusedMessageError(
+                f"walk at control tick {observation.control_tick}, its reference is at "
+                f"{self._reference.tick}: waiting for the next walk"
+            )
+        if self._early is not None:
+            early, self._early = self._early, None
+            return self.correct(*early)
+        return None
+
+    def correct(
+        self, learner: str, clock_ticks: int, correction_m: NDArray[np.float64]
+    ) -> WaistSegment | None:
+        """Take a correction; return the segment if its observation is here already.
+
+        Args:
+            learner: who sends it.
+            clock_ticks: of the observation that it answers.
+            correction_m: (2,) [m].
+
+        Raises:
+            RefusedMessageError: not finite, out of range, old, answered before, or from
+                a second learner.
+        """
+        if not np.isfinite(correction_m).all():
+            raise RefusedMessageError(f"correction {correction_m}: must be finite")
+        if np.abs(correction_m).max() > self._limit_m:
+            raise RefusedMessageError(
+                f"correction {correction_m} m: must be within {self._limit_m} m"
+            )
+        if self.learner is not None and learner != self.learner:
+            raise RefusedMessageError(
+                f"correction of a second learner, {learner}, beside {self.learner}"
+            )
+        observed = -1 if self._observation is None else self._observation.clock_ticks
+        if clock_ticks > observed:
+            self._early = (learner, clock_ticks, correction_m)
+            return None
+        if clock_ticks < observed or self._answered:
+            raise RefusedMessageError(
+                f"correction for clock tick {clock_ticks}, which is over"
+            )
+        self.learner = learner
+        self._answered = True
+        return self._reference.segment(correction_m)
