@@ -17,6 +17,10 @@ class MalformedMessageError(ValueError):
     """A message cannot be understood; the text says which field, and why."""
 
 
+class _Versioned(msgspec.Struct):
+    version: int
+
+
 def encode(payload: msgspec.Struct) -> str:
     """Return the JSON of a payload; numbers come back to the last bit."""
     return msgspec.json.encode(payload).decode()
@@ -29,6 +33,8 @@ def decode(kind: type[Payload], text: str | bytes) -> Payload:
         MalformedMessageError: not JSON, or not a payload of this kind and version.
     """
     try:
+        # A tag that is missing altogether would be taken for the right one.
+        msgspec.json.decode(text, type=_Versioned)
         return msgspec.json.decode(text, type=kind)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise MalformedMessageError(f"{kind.__name__}: {error}") from None

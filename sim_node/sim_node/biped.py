@@ -295,8 +295,9 @@ class SimulatedBiped:
         )
 
     def end(self, cause: EndCause) -> None:
-        """End the walk from outside; the clock goes on by one tick."""
-        self._watch.end_cause = cause
+        """End the walk from outside, unless it has failed; the clock ticks once."""
+        if self._watch.end_cause is None:
+            self._watch.end_cause = cause
         self._watch.clock_ticks += 1
 
     @property

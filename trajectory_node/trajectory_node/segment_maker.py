@@ -42,14 +42,14 @@ class SegmentMaker:
                 not seen, which cannot be continued.
         """
         last = self._observation
-        if last is not None and last.simulation == observation.simulation:
+        if last is not None and last.simulation != observation.simulation:
+            self._early = None
+        elif last is not None:
             if observation.clock_ticks <= last.clock_ticks:
                 raise RefusedMessageError(
                     f"observation of clock tick {observation.clock_ticks} comes after "
                     f"that of {last.clock_ticks}"
                 )
-        else:
-            self._early = None
         self._observation = observation
         self._answered = observation.end_cause is not None
         if observation.end_cause is EndCause.PEER_SILENT:
@@ -100,6 +100,11 @@ class SegmentMaker:
         if clock_ticks < observed or self._answered:
             raise RefusedMessageError(
                 f"correction for clock tick {clock_ticks}, which is over"
+            )
+        if self._reference.tick >= self._reference.ticks:
+            raise RefusedMessageError(
+                f"correction beyond the walk of {self._reference.ticks} ticks, "
+                "which is over"
             )
         self.learner = learner
         self._answered = True

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -101,6 +102,13 @@ class LearningSession:
         answer = self._walk.respond(observation)
         if isinstance(answer, EpisodeResult):
             self.walking = False
+            if not answer.learning:
+                schedule = self.learner.schedule
+                answer = msgspec.structs.replace(
+                    answer,
+                    subtask=schedule.subtask,
+                    schedule_complete=schedule.complete,
+                )
             self._count(answer)
         return answer
 

@@ -213,7 +213,7 @@ class XolAgent:
     # -- checkpoint --------------------------------------------------------------
 
     def memory(self) -> dict[str, NDArray[Any]]:
-        """Return all that was learned, as arrays; valid between episodes."""
+        """Return a copy of all that was learned, as arrays; valid between episodes."""
         count = self.states.count
         arrays = {
             "state_discrete": self.states.discrete,
@@ -224,7 +224,7 @@ class XolAgent:
         }
         for name in RuleTable.ARRAYS:
             arrays[name] = getattr(self.rules, name)[:count]
-        return arrays
+        return {name: array.copy() for name, array in arrays.items()}
 
     def restore(self, memory: dict[str, NDArray[Any]]) -> None:
         """Take over what `memory` returned.
@@ -233,7 +233,9 @@ class XolAgent:
             ValueError: an array is missing or its shape belongs to another problem.
         """
         current = self.memory()
-        count = len(memory.get("state_life", ()))
+        if np.ndim(memory.get("state_life")) != 1:
+            raise ValueError("memory: array state_life is missing or no list")
+        count = len(memory["state_life"])
         for name, own in current.items():
             if name not in memory:
                 raise ValueError(f"memory: array {name} is missing")

@@ -122,6 +122,8 @@ class BasisStates:
             create: make a state where none is active; without it the nearest state
                 of the same partition is returned, or NO_STATE if there is none.
         """
+        # One representation per number: whole numbers are floats, -0.0 is 0.0.
+        inputs = np.asarray(inputs, dtype=np.float64) + 0.0
         discrete = inputs[: self.n_discrete]
         point = inputs[self.n_discrete :] / self._radii
         if not self._gaussian:

@@ -80,8 +80,6 @@ class GuardedNode(Node):  # type: ignore[misc]
 
     def remark(self, level: bytes, key: str, text: str) -> None:
         """Put a remark into the next diagnostics, with its severity."""
-        self.failure: str | None = None
-        """Set by a node that cannot go on: why."""
         self._worst = max(self._worst, level)
         self._remarks[key] = text
 
@@ -101,8 +99,6 @@ class GuardedNode(Node):  # type: ignore[misc]
         array = DiagnosticArray(status=[status])
         array.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(array)
-        self.failure: str | None = None
-        """Set by a node that cannot go on: why."""
         self._worst = DiagnosticStatus.OK
         self._remarks.clear()
 

@@ -42,15 +42,11 @@ def test_a_walk_shorter_than_the_first_target_has_one_subtask():
     assert schedule_of(walk_ticks=500).targets == (500,)
 
 
-@pytest.mark.xfail(
-    run=False, strict=True, reason="the list of targets grows without end"
-)
 def test_an_extension_too_short_to_count_is_refused():
     with pytest.raises(ValueError, match="extension_s"):
         schedule_of(extension_s=1e-7)
 
 
-@pytest.mark.xfail(strict=True, reason="the first walk ends before it begins")
 def test_a_first_target_too_short_to_count_is_refused():
     with pytest.raises(ValueError, match="first_target_s"):
         schedule_of(first_target_s=1e-7)

@@ -98,20 +98,7 @@ def experienced_agent():
     return agent
 
 
-MISSING = [
-    pytest.param(
-        name,
-        marks=pytest.mark.xfail(
-            strict=True, reason="the first array is blamed for the missing life spans"
-        )
-        if name == "state_life"
-        else (),
-    )
-    for name in NAMES
-]
-
-
-@pytest.mark.parametrize("name", MISSING)
+@pytest.mark.parametrize("name", NAMES)
 def test_a_missing_array_is_named(name):
     memory = experienced_agent().memory()
     del memory[name]

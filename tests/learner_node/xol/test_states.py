@@ -101,13 +101,11 @@ def test_more_states_than_first_fit_are_all_found_again(basis):
     assert [find(states, *each) for each in inputs] == made
 
 
-@pytest.mark.xfail(strict=True, reason="discrete inputs are compared bit by bit")
 def test_zero_and_minus_zero_are_the_same_discrete_input():
     states = basis_states(n_discrete=1)
     assert find(states, 0.0, 5.0) == find(states, -0.0, 5.0)
 
 
-@pytest.mark.xfail(strict=True, reason="discrete inputs are compared bit by bit")
 def test_whole_numbers_are_the_same_inputs_as_floating_point_ones():
     states = basis_states(n_discrete=1)
     made = find(states, 1.0, 5.0)
