@@ -13,6 +13,7 @@ from msgs_json.settings import from_mapping, to_mapping
 UNITS = {
     "learn": {"--checkpoint-every": "seconds", "--episodes": "episodes"},
     "walk": {"--tds": "[s]"},
+    "up": {"--episodes": "episodes", "--publish-every": "control ticks"},
     "check": {},
 }
 
@@ -101,7 +102,12 @@ def test_every_option_that_takes_a_number_of_units_is_looked_at():
         for action in options._actions
         if action.type is not None and action.type.__name__ in ("float", "natural")
     }
-    without_unit = {("learn", "--seed"), ("walk", "--seed")}
+    without_unit = {
+        ("learn", "--seed"),
+        ("walk", "--seed"),
+        ("up", "--seed"),
+        ("up", "--domain"),
+    }
     looked_at = {(verb, option) for verb in UNITS for option in UNITS[verb]}
     assert numbers - without_unit == looked_at
 

@@ -104,10 +104,19 @@ def test_the_reported_hashes_are_those_of_the_memory(biped):
 
 def test_the_seed_is_zero_unless_given(biped):
     first, second = (
-        biped(*SHORT_LEARN, "--episodes", 1, *seed).values["memory_sha256"]
+        biped(*SHORT_LEARN, "--fresh", "--episodes", 1, *seed).values["memory_sha256"]
         for seed in ((), ("--seed", 0))
     )
     assert first == second
+
+
+def test_what_was_learned_before_is_not_overwritten(biped, tmp_path):
+    biped(*SHORT_LEARN, "--episodes", 1)
+    before = (tmp_path / "out" / "memory.npz").read_bytes()
+    outcome = biped(*SHORT_LEARN, "--episodes", 1)
+    assert outcome.status == 2
+    assert "is there already" in outcome.err
+    assert (tmp_path / "out" / "memory.npz").read_bytes() == before
 
 
 def test_the_log_has_a_row_per_episode(biped, tmp_path):

@@ -42,14 +42,15 @@ class SegmentMaker:
                 not seen, which cannot be continued.
         """
         last = self._observation
-        if last is not None and last.simulation != observation.simulation:
-            self._early = None
-        elif last is not None:
-            if observation.clock_ticks <= last.clock_ticks:
+        if last is not None:
+            anew = last.simulation != observation.simulation
+            if not anew and observation.clock_ticks <= last.clock_ticks:
                 raise RefusedMessageError(
                     f"observation of clock tick {observation.clock_ticks} comes after "
                     f"that of {last.clock_ticks}"
                 )
+            if anew:
+                self._early = None
         self._observation = observation
         self._answered = observation.end_cause is not None
         if observation.end_cause is EndCause.PEER_SILENT:
