@@ -233,9 +233,10 @@ class XolAgent:
             ValueError: an array is missing or its shape belongs to another problem.
         """
         current = self.memory()
-        if np.ndim(memory.get("state_life")) != 1:
+        life = memory.get("state_life")
+        if life is None or life.ndim != 1:
             raise ValueError("memory: array state_life is missing or no list")
-        count = len(memory["state_life"])
+        count = len(life)
         for name, own in current.items():
             if name not in memory:
                 raise ValueError(f"memory: array {name} is missing")
