@@ -31,9 +31,9 @@ def measure() -> list[Figure]:
     walker = Walker(settings, np.random.default_rng(0))
     walk = static_walk(settings.learner, walker.walk_ticks)
     whole, bare = [], []
-    for turn in range(_TURNS):
+    for _ in range(_TURNS):
         start = time.perf_counter()
-        result = walker.walk(walk, episode=turn)
+        result = walker.walk(walk)
         whole.append((time.perf_counter() - start) / result.control_ticks)
         bare.append(_bare_tick_s(walker, commands))
     walker.close()
@@ -58,7 +58,7 @@ def _recorded_commands(
         references.append(tick.joint_reference)
 
     walker = Walker(settings, np.random.default_rng(0), record)
-    walker.walk(static_walk(settings.learner, walker.walk_ticks), episode=0)
+    walker.walk(static_walk(settings.learner, walker.walk_ticks))
     walker.close()
     velocities = (np.diff(references, axis=0) / 0.002).tolist()
     return list(zip(references[:-1], velocities, strict=True))
@@ -68,7 +68,7 @@ def _bare_tick_s(
     walker: Walker, commands: list[tuple[list[float], list[float]]]
 ) -> float:
     world = walker.biped.world
-    walker.biped.begin_walk(episode=0)
+    walker.biped.begin_walk(episode=1)
     spent = 0.0
     for q, dq in commands:
         world.command(q, dq)

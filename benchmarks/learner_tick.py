@@ -59,7 +59,9 @@ def _observation(rng: np.random.Generator, tick: int) -> Observation:
     # Ticks stay below the first target and on a decision.
     tick = 10 * (1 + tick % 90) if tick else 0
     return Observation(
+        simulation="benchmark",
         episode=1,
+        clock_ticks=tick,
         control_tick=tick,
         phase=PhaseFlags(
             planned_right_support=bool(right),
@@ -78,4 +80,5 @@ def _observation(rng: np.random.Generator, tick: int) -> Observation:
         torque_integral_n2m2_s=1.0,
         mean_joint_error_rad=0.0,
         mean_joint_velocity_error_rad_s=0.0,
+        trajectory_sha256="",
     )

@@ -203,11 +203,13 @@ class World:
             self.robot, physicsClientId=self.client
         )
         # PyBullet speaks of the torso's CoM; the waist lies below it.
-        down = pybullet.rotateVector(orientation, (0.0, 0.0, -BIPED.torso_com_height))
-        return (
-            np.add(position, down),
-            np.add(velocity, np.cross(spin, down)),
+        dx, dy, dz = pybullet.rotateVector(
+            orientation, (0.0, 0.0, -BIPED.torso_com_height)
         )
+        wx, wy, wz = spin
+        # Plain numbers: numpy's cross product alone would take longer than all of this.
+        turning = (wy * dz - wz * dy, wz * dx - wx * dz, wx * dy - wy * dx)
+        return np.add(position, (dx, dy, dz)), np.add(velocity, turning)
 
     # -- states --------------------------------------------------------------------
 
