@@ -306,6 +306,12 @@ class SimulatedBiped:
         return self._references.rows - 1 - self._row()
 
     @property
+    def at_segment_end(self) -> bool:
+        """Whether the robot is where its segment wants the next observation."""
+        segment = self._references.segment
+        return self._watch.control_tick == segment.first_tick + segment.n_ticks
+
+    @property
     def end_cause(self) -> EndCause | None:
         """Why the walk has ended, if it has."""
         return self._watch.end_cause

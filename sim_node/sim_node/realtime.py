@@ -152,7 +152,9 @@ class RealtimeLoop:
             return
         biped.advance()
         over = biped.end_cause is not None
-        if over or biped.control_tick % TICKS_PER_LEARNING_TICK == 0:
+        # The walk's last segment is shorter; on look-ahead, only the count tells.
+        due = biped.at_segment_end or biped.control_tick % TICKS_PER_LEARNING_TICK == 0
+        if over or due:
             if not self._answered:
                 self.punctuality.missed_deadlines += 1
             self._give_out(self._pilot.observe())

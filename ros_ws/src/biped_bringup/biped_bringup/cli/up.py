@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 from typing import Any
 
@@ -129,6 +130,7 @@ def run(options: argparse.Namespace) -> int:
     ).flat()
     domain = private_domain() if options.domain is None else options.domain
     environment = node_environment(domain, options.discovery)
+    os.environ.update(environment)  # the supervisor's own node, too
     screen = StatusScreen(Console(stderr=True), live=not options.no_view)
     with stop_requests() as stops, screen:
         screen.line("supervisor", f"ROS_DOMAIN_ID={domain}, {options.discovery}")
