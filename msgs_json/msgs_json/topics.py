@@ -85,33 +85,9 @@ ROBOT_DESCRIPTION = Topic(
     latched=True,
     meaning="URDF",
 )
-MARKERS = Topic(
-    "/biped/markers",
-    "visualization_msgs/msg/MarkerArray",
-    depth=10,
-    meaning="support polygon, ZMP, its reference, waist path; world frame [m]",
-)
 DIAGNOSTICS = Topic(
     "/diagnostics",
     "diagnostic_msgs/msg/DiagnosticArray",
     depth=10,
     meaning="rates, lateness, deadlines missed, messages dropped and refused",
-)
-
-TOPICS = (
-    CLOCK,
-    JOINT_STATES,
-    JOINT_REFERENCES,
-    ZMP,
-    ZMP_REFERENCE,
-    PHASE,
-    OBSERVATION,
-    CORRECTION,
-    WAIST_REFERENCE,
-    STANCE,
-    EPISODE,
-    LEARNER_STATUS,
-    ROBOT_DESCRIPTION,
-    MARKERS,
-    DIAGNOSTICS,
 )

@@ -9,9 +9,6 @@ from pathlib import Path
 import pytest
 import yaml
 
-from biped_bringup.node_parameters import NodeParameters, node_parameters
-from biped_bringup.run_settings import load_settings
-
 # Parallel test processes must not meet: xdist numbers its workers gw0, gw1, ...
 WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
@@ -23,12 +20,6 @@ _FIRST_DOMAIN = 40
 def domain(request: pytest.FixtureRequest) -> int:
     """Return a ROS domain that no test running at the same time uses."""
     return _FIRST_DOMAIN + 10 * WORKER + hash(request.node.nodeid) % 10
-
-
-@pytest.fixture
-def parameters() -> NodeParameters:
-    """Return what the three nodes need to learn with the quick preset, seed 5."""
-    return node_parameters(load_settings("quick"), seed=5)
 
 
 @pytest.fixture
