@@ -1,0 +1,1 @@
+"""Verbs on message, service and action types."""
