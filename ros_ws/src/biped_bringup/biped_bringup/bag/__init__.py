@@ -1,0 +1,1 @@
+"""Bags: recordings of the graph as MCAP files in the layout of rosbag2."""

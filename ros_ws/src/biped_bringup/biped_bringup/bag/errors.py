@@ -1,0 +1,7 @@
+"""Errors of bags."""
+
+from __future__ import annotations
+
+
+class BagError(Exception):
+    """A bag cannot be written or read; the text says which, where and why."""
