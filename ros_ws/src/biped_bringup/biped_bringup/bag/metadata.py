@@ -19,7 +19,6 @@ from learner_node.atomic_file import atomic_file
 FILE_NAME = "metadata.yaml"
 VERSION = 9
 _ROOT = "rosbag2_bagfile_information"
-_ROS_DISTRO = "jazzy"
 
 OfferedQos = Mapping[str, Any]
 """One publisher's quality of service, with rosbag2's keys and words."""
@@ -58,6 +57,7 @@ class BagMetadata:
     topics: list[TopicInfo] = field(default_factory=list)
     files: list[FileInfo] = field(default_factory=list)
     custom: dict[str, str] = field(default_factory=dict)
+    ros_distro: str = "jazzy"
 
     @property
     def message_count(self) -> int:
@@ -109,7 +109,7 @@ def metadata_text(metadata: BagMetadata, *, with_root: bool = True) -> str:
             for file in metadata.files
         ],
         "custom_data": dict(metadata.custom) or None,
-        "ros_distro": _ROS_DISTRO,
+        "ros_distro": metadata.ros_distro,
     }
     return yaml.dump(
         {_ROOT: content} if with_root else content,
@@ -147,10 +147,11 @@ def read_metadata(folder: Path) -> BagMetadata:
                 for file in content["files"]
             ],
             custom=dict(content.get("custom_data") or {}),
+            ros_distro=str(content.get("ros_distro") or ""),
         )
     except OSError as error:
         raise BagError(f"{path}: cannot be read ({error.strerror})") from None
-    except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError) as error:
+    except (yaml.YAMLError, ValueError, LookupError, TypeError) as error:
         reason = " ".join(str(error).split())
         raise BagError(f"{path}: is no metadata of a bag ({reason})") from None
 

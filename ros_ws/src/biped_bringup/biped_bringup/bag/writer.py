@@ -59,6 +59,7 @@ class RecordedMessage(NamedTuple):
 class _Topic:
     info: TopicInfo
     latched: bool
+    definition: str
     channel: int = 0
     """Of the present file."""
     last: RecordedMessage | None = None
@@ -117,6 +118,7 @@ class BagWriter:
         *,
         type_hash: str = "",
         latched: bool = False,
+        definition: str = "",
     ) -> None:
         """Make a topic known; messages of it can be written from now on.
 
@@ -126,13 +128,15 @@ class BagWriter:
             offered_qos: profiles of its publishers, with rosbag2's keys and words.
             type_hash: RIHS01 hash of the type, if known.
             latched: each new file begins with its last message.
+            definition: of the message and all that is nested in it (ros2msg), as
+                another bag has it; by default that of the installed package.
 
         Raises:
             BagError: no installed package defines the type.
         """
-        message_definition(type_name)
+        text = definition or message_definition(type_name)
         info = TopicInfo(name, type_name, tuple(offered_qos), type_hash=type_hash)
-        self._topics[name] = topic = _Topic(info, latched)
+        self._topics[name] = topic = _Topic(info, latched, text)
         self.metadata.topics.append(info)
         self._add_channel(self._file, topic)
 
@@ -252,6 +256,7 @@ class BagWriter:
             stream,  # type: ignore[arg-type]
             chunk_size=CHUNK_BYTES,
             compression=CompressionType.ZSTD,
+            enable_data_crcs=True,  # a finished file shows any damaged byte
         )
         writer.start(profile=PROFILE, library=f"biped {version('biped')}")
         for name, content in self._records.items():
@@ -272,9 +277,8 @@ class BagWriter:
     def _add_channel(self, file: _File, topic: _Topic) -> None:
         info = topic.info
         if info.type_name not in file.schemas:
-            text = message_definition(info.type_name)
             file.schemas[info.type_name] = file.writer.register_schema(
-                info.type_name, ENCODING, text.encode()
+                info.type_name, ENCODING, topic.definition.encode()
             )
         topic.channel = file.writer.register_channel(
             info.name,
