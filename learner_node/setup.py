@@ -5,16 +5,10 @@ NAME = "learner_node"
 setup(
     name=NAME,
     version="0.1.0",
-    description="Exploitation-oriented learning of the waist correction",
-    license="Apache-2.0",
-    maintainer="The biped project authors",
-    maintainer_email="maintainers@example.org",
-    packages=find_packages(exclude=["test"]),
-    package_data={NAME: ["py.typed", "*.yaml", "*/*.yaml"]},
+    packages=find_packages(),
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
-    install_requires=["setuptools"],
-    zip_safe=False,
+    entry_points={"console_scripts": ["learner_node = learner_node.node:main"]},
 )

@@ -5,16 +5,9 @@ NAME = "msgs_json"
 setup(
     name=NAME,
     version="0.1.0",
-    description="Contracts between the nodes: topic names, QoS and typed JSON payloads",
-    license="Apache-2.0",
-    maintainer="The biped project authors",
-    maintainer_email="maintainers@example.org",
-    packages=find_packages(exclude=["test"]),
-    package_data={NAME: ["py.typed", "*.yaml", "*/*.yaml", "*.json", "*/*.json"]},
+    packages=find_packages(),
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
-    install_requires=["setuptools"],
-    zip_safe=False,
 )

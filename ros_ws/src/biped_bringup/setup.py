@@ -5,17 +5,12 @@ NAME = "biped_bringup"
 setup(
     name=NAME,
     version="0.1.0",
-    description="Wiring of the biped: presets, walks, training and the command line",
-    license="Apache-2.0",
-    maintainer="The biped project authors",
-    maintainer_email="maintainers@example.org",
-    packages=find_packages(exclude=["test"]),
-    package_data={NAME: ["py.typed", "*.yaml", "*/*.yaml"]},
+    packages=find_packages(),
+    package_data={NAME: ["presets/*.yaml", "*/*.xml"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
+        (f"share/{NAME}/hook", ["hook/wheels_prefix.sh"]),
     ],
-    install_requires=["setuptools"],
-    zip_safe=False,
     entry_points={"console_scripts": ["biped = biped_bringup.cli.main:main"]},
 )
