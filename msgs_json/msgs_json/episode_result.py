@@ -12,11 +12,17 @@ class CostTerms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """The six terms of T_err, eq. (2), in the order of the paper; they add up to it."""
 
     zmp: float
+    """ZMP error over the walk, late errors weighing more []."""
     final_zmp: float
+    """ZMP error at the end []."""
     joint_tracking: float
+    """Tracking error of the joints over the walk []."""
     joint_torque: float
+    """Joint torques over the walk []."""
     final_joint_position: float
+    """Mean position error of the joints at the end []."""
     final_joint_velocity: float
+    """Mean velocity error of the joints at the end []."""
 
     @property
     def total(self) -> float:
@@ -46,12 +52,15 @@ class EpisodeResult(
     learning: bool
     """Whether the learner learned from it; a trial is walked frozen."""
     end_cause: EndCause
+    """Why the walk ended."""
     control_ticks: Count
     """Control ticks walked."""
     target_ticks: Count
     """Control ticks to walk for success."""
     peak_zmp_error_m: float
+    """Largest norm of the ZMP error [m]."""
     peak_joint_velocity_rad_s: float
+    """Largest joint speed [rad/s]."""
     cost: CostTerms | None
     """Terms of T_err; None before the first control tick."""
     t_err_estimate: float | None

@@ -22,9 +22,13 @@ class LearnerStatus(
     active: bool
     """Takes part; before, it listens whether another one does."""
     seed: Count
+    """Of the session's random choices."""
     target_time_s: float
+    """Walking time that the present subtask asks for [s]."""
     subtask: Count
+    """0-based place in the learning schedule."""
     subtasks: Count
+    """How many the schedule has."""
     successes: Count
     """RWDforSuc received in the present subtask."""
     episodes: Count
@@ -32,15 +36,22 @@ class LearnerStatus(
     survival: float
     """Walked over target time, mean of the last episodes."""
     basis_states: Count
+    """States in memory."""
     fixed_states: Count
+    """Of these, in fixed mode."""
     penalty_states: Count
+    """Of these, penalty states."""
     t_err_estimate: float | None
+    """T_err-hat of the present subtask; None before its first completed walk."""
     schedule_complete: bool
+    """The last subtask has been passed."""
     learned: bool
     """The schedule is complete and a frozen greedy walk has succeeded."""
     frozen: bool
     """Learning is switched off by a user; walks are greedy."""
     simulated_s: float
+    """Walked in all learning episodes [s]."""
     memory_sha256: str
+    """Hash of all that was learned."""
     trajectory_sha256: str
     """Chained over the learning episodes."""

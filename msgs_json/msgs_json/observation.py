@@ -26,9 +26,13 @@ class PhaseFlags(
     """
 
     planned_right_support: bool
+    """Support leg as planned: right, not left."""
     planned_double_support: bool
+    """Both feet are planned to carry load."""
     measured_right_support: bool
+    """The right foot carries more load than the left."""
     measured_double_support: bool
+    """Both feet carry load."""
     step_index: Count
     """Single supports begun so far (0 before the first step)."""
 
@@ -56,23 +60,27 @@ class Observation(
     control_tick: Count
     """Control ticks walked since the episode began."""
     phase: PhaseFlags
+    """Support phase at the last control tick."""
     waist_in_support_foot_m: tuple[float, float]
-    """(x, y) of the waist from the planned support foot's ankle point."""
+    """(x, y) of the waist from the planned support foot's ankle point [m]."""
     zmp_error_m: tuple[float, float]
-    """Measured minus reference ZMP, (x, y) in the world frame."""
+    """Measured minus reference ZMP, (x, y) in the world frame [m]."""
     waist_acceleration_m_s2: tuple[float, float]
+    """Change of the waist's velocity per time since the last observation [m/s^2]."""
     worst_zmp_error_m: float
+    """Largest norm of the ZMP error [m]."""
     worst_joint_velocity_rad_s: float
+    """Largest joint speed [rad/s]."""
     zmp_error_integral_m2_s2: float
-    """Increment of int |Z_err|^2 t dt."""
+    """Increment of int |Z_err|^2 t dt [m^2 s^2]."""
     joint_error_integral_rad2_s: float
-    """Increment of int |q_ref - q|^2 dt."""
+    """Increment of int |q_ref - q|^2 dt [rad^2 s]."""
     torque_integral_n2m2_s: float
-    """Increment of int |u|^2 dt."""
+    """Increment of int |u|^2 dt [N^2 m^2 s]."""
     mean_joint_error_rad: float
-    """Mean over the joints of |q_ref - q| at the last control tick."""
+    """Mean over the joints of |q_ref - q| at the last control tick [rad]."""
     mean_joint_velocity_error_rad_s: float
-    """Mean over the joints of |dq_ref - dq| at the last control tick."""
+    """Mean over the joints of |dq_ref - dq| at the last control tick [rad/s]."""
     trajectory_sha256: str
     """Hash of all that the walk measured so far."""
     end_cause: EndCause | None = None

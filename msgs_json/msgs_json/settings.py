@@ -23,7 +23,7 @@ class SettingsError(ValueError):
 
     def __init__(self, key: str, value: object, allowed: str) -> None:
         """Say which key has which unusable value, and what would be allowed."""
-        super().__init__(f"{key} = {value!r}: {allowed}")
+        super().__init__(f"{key} = {_shown(value)}: {allowed}")
         self.key = key
         self.value = value
         self.allowed = allowed
@@ -32,6 +32,13 @@ class SettingsError(ValueError):
         """Return the same error with its key prefixed by the enclosing section."""
         key = f"{section}.{self.key}" if section else self.key
         return SettingsError(key, self.value, self.allowed)
+
+
+def _shown(value: object) -> str:
+    try:
+        return repr(value)
+    except ValueError:
+        return "a whole number of thousands of digits"  # which Python does not write
 
 
 def setting(
@@ -43,6 +50,7 @@ def setting(
     upper: float | None = None,
     above: float | None = None,
     choices: tuple[str, ...] | None = None,
+    live: bool = False,
 ) -> Any:
     """Declare one field of a settings dataclass.
 
@@ -54,6 +62,7 @@ def setting(
         upper: largest allowed value.
         above: exclusive lower bound.
         choices: the allowed words, for text.
+        live: may be changed while a node runs; no walk may depend on it.
     """
     metadata = {
         "unit": unit,
@@ -62,6 +71,7 @@ def setting(
         "upper": upper,
         "above": above,
         "choices": choices,
+        "live": live,
     }
     return dataclasses.field(default=default, metadata=metadata)
 

@@ -279,6 +279,7 @@ def test_a_declaration_keeps_unit_meaning_and_range():
         "upper": 40,
         "above": None,
         "choices": None,
+        "live": False,
     }
 
 
@@ -328,3 +329,14 @@ def test_a_whole_number_too_large_is_refused_in_a_list():
 def test_a_whole_number_too_large_is_refused_in_code_too():
     with pytest.raises(SettingsError, match="is too large a number"):
         Motor(gain=10**400)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("teeth", 16**5000), ("gain", 16**5000), ("stops_rad", [16**5000])],
+    ids=["whole number", "number", "list"],
+)
+def test_a_number_of_thousands_of_digits_is_refused_in_one_line(field, value):
+    said = str(complaint(Motor, {field: value}))
+    assert "a whole number of thousands of digits: " in said
+    assert len(said.splitlines()) == 1
