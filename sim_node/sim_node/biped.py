@@ -9,36 +9,32 @@ from __future__ import annotations
 import copy
 import hashlib
 import math
-import operator
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from biped_description import kinematics
-from biped_description.joints import JOINT_NAMES, TORQUE_LIMIT
+from biped_description.joints import TORQUE_LIMIT
 from msgs_json.end_cause import EndCause
-from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.timing import (
-    CONTROL_PERIOD_S,
-    CONTROL_PERIOD_US,
-    microseconds,
     seconds,
 )
 from sim_node.contact import NO_CONTACT, FloorContact, floor_contact
-from sim_node.control_tick import ControlTick, sum_up
+from sim_node.control_tick import ControlTick, phase_flags
 from sim_node.disturbance import Disturbance, draw_disturbance
 from sim_node.errors import SnapshotError
+from sim_node.joint_references import JointReferences, PlannedPhase, solve, standing
+from sim_node.limit_watch import LimitCounts, LimitWatch
 from sim_node.settings import SimSettings
+from sim_node.tick_sums import sum_up
 from sim_node.world import World
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
-# A servo at this share of its limit counts as saturated.
-_SATURATED = 0.999
 _IK_END_CAUSE = {
     kinematics.UNREACHABLE: EndCause.IK_UNREACHABLE,
     kinematics.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
@@ -53,26 +49,7 @@ class BipedSnapshot:
     watch: _Watch
     disturbance: Disturbance
     rng_state: dict[str, Any]
-    references: _References
-
-
-@dataclass(frozen=True)
-class _References:
-    """A segment with the joint motion that follows it."""
-
-    segment: WaistSegment
-    rows: int
-    """Rows that the legs can reach, from the first on."""
-    q: list[list[float]]
-    """(rows, 12) [rad]"""
-    dq: list[list[float]]
-    """(rows - 1, 12) from each row to the next [rad/s]"""
-    zmp: list[list[float]]
-    """(rows, 2) [m]"""
-
-
-def _standing_references(start: WaistSegment) -> _References:
-    return _References(segment=start, rows=1, q=[], dq=[], zmp=[])
+    references: JointReferences
 
 
 @dataclass
@@ -84,15 +61,16 @@ class _Watch:
     control_tick: int = 0
     contact: FloorContact = NO_CONTACT
     waist_velocity: tuple[float, float] = (0.0, 0.0)
-    unloaded_ticks: int = 0
-    saturated_ticks: int = 0
+    limits: LimitCounts = field(default_factory=LimitCounts)
     end_cause: EndCause | None = None
     trajectory: Any = field(default_factory=hashlib.sha256)
     """Running hash of all that was measured."""
 
     def copy(self) -> _Watch:
         """Return an independent copy."""
-        return replace(self, trajectory=self.trajectory.copy())
+        return replace(
+            self, limits=replace(self.limits), trajectory=self.trajectory.copy()
+        )
 
 
 class SimulatedBiped:
@@ -125,11 +103,8 @@ class SimulatedBiped:
         self.world.set_torque_limits(
             TORQUE_LIMIT * settings.disturbances.torque_limit_factor
         )
-        limits = settings.limits
-        self._unloaded_limit = _ticks(limits.unloaded_feet_s)
-        self._saturation_limit = _ticks(limits.torque_saturation_s)
-        self._torque_marks = [_SATURATED * limit for limit in self.world.torque_limits]
-        self._references = _standing_references(start)
+        self._limit_watch = LimitWatch(settings.limits, self.world.torque_limits)
+        self._references = standing(start)
         self._snapshots: set[BipedSnapshot] = set()
         # Measured since the last observation.
         self._ticks: list[ControlTick] = []
@@ -163,9 +138,9 @@ class SimulatedBiped:
             episode=episode,
             clock_ticks=self._watch.clock_ticks + 1,
             contact=contact,
-            waist_velocity=(float(velocity[0]), float(velocity[1])),
+            waist_velocity=velocity[:2],
         )
-        self._references = _standing_references(self._start)
+        self._references = standing(self._start)
         self._ticks.clear()
         return self.observe()
 
@@ -183,8 +158,9 @@ class SimulatedBiped:
             )
         self.follow(segment, rows=segment.n_ticks + 1)
         end = segment.first_tick + segment.n_ticks
-        while self._watch.control_tick < end and self._watch.end_cause is None:
-            self.advance()
+        watch = self._watch
+        while watch.control_tick < end and watch.end_cause is None:
+            self._advance()
         return self.observe()
 
     def follow(self, segment: WaistSegment, rows: int | None = None) -> None:
@@ -210,28 +186,13 @@ class SimulatedBiped:
                 f"{segment.first_tick + rows - 1}, "
                 f"the robot is at tick {watch.control_tick}"
             )
-        if segment.n_ticks < 1 or not np.isfinite(segment.zmp_reference[:rows]).all():
-            raise ValueError("segment without a tick, or with a number not finite")
-        q_reference = np.empty((rows, len(JOINT_NAMES)))
-        status, row, _ = kinematics.solve_legs(
-            segment.waist[:rows],
-            segment.left_foot[:rows],
-            segment.right_foot[:rows],
-            q_reference,
-        )
-        if status == kinematics.NOT_FINITE:
-            raise ValueError(f"segment has a number that is not finite, row {row}")
-        solved_rows = rows if status == kinematics.SOLVED else row
-        if solved_rows <= segment.n_ticks:
+        if segment.n_ticks < 1:
+            raise ValueError("segment without a tick")
+        references, status = solve(segment, rows)
+        if references.rows <= segment.n_ticks:
             watch.end_cause = _IK_END_CAUSE[status]
             return
-        self._references = _References(
-            segment=segment,
-            rows=solved_rows,
-            q=q_reference.tolist(),
-            dq=(np.diff(q_reference, axis=0) / CONTROL_PERIOD_S).tolist(),
-            zmp=segment.zmp_reference[:rows].tolist(),
-        )
+        self._references = references
 
     def advance(self) -> ControlTick:
         """Walk one control tick along the references.
@@ -240,14 +201,24 @@ class SimulatedBiped:
             ValueError: the walk is over, or the references are used up.
         """
         self._check_walking()
-        watch = self._watch
         if self.ticks_ahead < 1:
-            raise ValueError(f"no reference for tick {watch.control_tick + 1}")
-        self._push()
-        references, row = self._references, self._row()
+            raise ValueError(f"no reference for tick {self._watch.control_tick + 1}")
+        return self._advance()
+
+    def _advance(self) -> ControlTick:
+        push, at = self._disturbance, self._watch.control_tick
+        if push.push_from_tick <= at < push.push_to_tick:
+            self.world.push(push.push_force_n)
+        references = self._references
+        row = at - references.segment.first_tick
         dq_reference = references.dq[row]
         self.world.step(references.q[row], dq_reference)
-        tick = self._read(references.q[row + 1], dq_reference, references.zmp[row + 1])
+        tick = self._read(
+            references.q[row + 1],
+            dq_reference,
+            references.zmp[row + 1],
+            references.phase[row + 1],
+        )
         self._ticks.append(tick)
         if self.on_tick is not None:
             self.on_tick(tick)
@@ -259,25 +230,39 @@ class SimulatedBiped:
         Numbers that the physics left undefined are reported as zero, with the end
         cause `physics_nan`.
         """
-        watch, segment = self._watch, self._references.segment
-        row = self._row()
+        watch, references, row = self._watch, self._references, self._row()
+        segment, planned = references.segment, references.phase[row]
         waist, velocity = self.world.waist()
-        right_support = bool(segment.right_support[row])
-        support_foot = (segment.right_foot if right_support else segment.left_foot)[row]
-        zmp_error = np.subtract(watch.contact[:2], segment.zmp_reference[row])
-        if not np.isfinite(waist).all():
+        if not math.isfinite(sum(waist)):
             watch.end_cause = EndCause.PHYSICS_NAN
+        foot = segment.right_foot if planned[0] else segment.left_foot
         # Over the time since the last observation; the walk's last one is shorter.
         period_s = seconds(max(1, len(self._ticks)))
-        acceleration = np.subtract(velocity[:2], watch.waist_velocity) / period_s
-        watch.waist_velocity = (float(velocity[0]), float(velocity[1]))
-        waist_in_support_foot = waist[:2] - support_foot[:2]
-        # Drawn also where its size is zero, so that a size changes no other draw.
-        noise = self._rng.standard_normal((3, 2))
+        quantities = (
+            (waist, foot[row].tolist(), 1.0),
+            (watch.contact, segment.zmp_reference[row].tolist(), 1.0),
+            (velocity, watch.waist_velocity, period_s),
+        )
+        watch.waist_velocity = velocity[:2]
         sizes = self.settings.disturbances
-        waist_in_support_foot += sizes.position_noise_m * noise[0]
-        zmp_error += sizes.zmp_noise_m * noise[1]
-        acceleration += sizes.acceleration_noise_m_s2 * noise[2]
+        # Drawn also where its size is zero, so that a size changes no other draw.
+        noise = self._rng.standard_normal((3, 2)).tolist()
+        waist_in_support_foot, zmp_error, acceleration = (
+            _pair(
+                (value[0] - origin[0]) / unit + size * draw[0],
+                (value[1] - origin[1]) / unit + size * draw[1],
+            )
+            for (value, origin, unit), size, draw in zip(
+                quantities,
+                (
+                    sizes.position_noise_m,
+                    sizes.zmp_noise_m,
+                    sizes.acceleration_noise_m_s2,
+                ),
+                noise,
+                strict=True,
+            )
+        )
         sums = sum_up(self._ticks, watch.trajectory)
         self._ticks.clear()
         return Observation(
@@ -285,10 +270,10 @@ class SimulatedBiped:
             episode=watch.episode,
             clock_ticks=watch.clock_ticks,
             control_tick=watch.control_tick,
-            phase=self._phase(),
-            waist_in_support_foot_m=_pair(waist_in_support_foot),
-            zmp_error_m=_pair(zmp_error),
-            waist_acceleration_m_s2=_pair(acceleration),
+            phase=phase_flags(planned, watch.contact),
+            waist_in_support_foot_m=waist_in_support_foot,
+            zmp_error_m=zmp_error,
+            waist_acceleration_m_s2=acceleration,
             **sums._asdict(),
             trajectory_sha256=self.trajectory_sha256,
             end_cause=watch.end_cause,
@@ -399,16 +384,12 @@ class SimulatedBiped:
         for _ in range(_SETTLING_TICKS):
             self.world.step(q.tolist(), still)
 
-    def _push(self) -> None:
-        push = self._disturbance
-        if push.push_from_tick <= self._watch.control_tick < push.push_to_tick:
-            self.world.push(push.push_force_n)
-
     def _read(
         self,
         joint_reference: list[float],
         joint_velocity_reference: list[float],
         zmp_reference: list[float],
+        planned_phase: PlannedPhase,
     ) -> ControlTick:
         """Read the sensors after a control tick and watch the limits."""
         watch = self._watch
@@ -419,28 +400,12 @@ class SimulatedBiped:
             self.world.contacts(), self.world.left_sole, watch.contact[:2]
         )
         watch.contact = contact
-        zmp_error = math.hypot(
+        zmp_error_m = math.hypot(
             contact.zmp_x_m - zmp_reference[0], contact.zmp_y_m - zmp_reference[1]
         )
-        loaded = contact.left_load_n + contact.right_load_n > 0.0
-        watch.unloaded_ticks = 0 if loaded else watch.unloaded_ticks + 1
-        fastest = max(map(abs, velocity))
-        saturated = any(map(operator.ge, map(abs, torque), self._torque_marks))
-        watch.saturated_ticks = watch.saturated_ticks + 1 if saturated else 0
-        limits = self.settings.limits
-        # A sum is finite only if all of its terms are.
-        if not math.isfinite(zmp_error + sum(position) + sum(velocity) + sum(torque)):
-            watch.end_cause = EndCause.PHYSICS_NAN
-        elif contact.penetration_m > limits.foot_penetration_m:
-            watch.end_cause = EndCause.FOOT_THROUGH_FLOOR
-        elif zmp_error >= limits.zmp_error_m:
-            watch.end_cause = EndCause.ZMP_ERROR
-        elif fastest >= limits.joint_velocity_rad_s:
-            watch.end_cause = EndCause.JOINT_VELOCITY
-        elif watch.saturated_ticks >= self._saturation_limit:
-            watch.end_cause = EndCause.TORQUE_SATURATION
-        elif watch.unloaded_ticks >= self._unloaded_limit:
-            watch.end_cause = EndCause.FEET_UNLOADED
+        watch.end_cause = self._limit_watch.check(
+            watch.limits, position, velocity, torque, contact, zmp_error_m
+        )
         return ControlTick(
             watch.clock_ticks,
             watch.control_tick,
@@ -451,32 +416,15 @@ class SimulatedBiped:
             torque,
             contact,
             zmp_reference,
-            zmp_error,
-            self._phase(),
+            zmp_error_m,
+            planned_phase,
         )
 
     def _row(self) -> int:
         """Return the row of the references at which the robot is."""
         return self._watch.control_tick - self._references.segment.first_tick
 
-    def _phase(self) -> PhaseFlags:
-        row, contact = self._row(), self._watch.contact
-        segment = self._references.segment
-        return PhaseFlags(
-            planned_right_support=bool(segment.right_support[row]),
-            planned_double_support=bool(segment.double_support[row]),
-            measured_right_support=contact.right_load_n > contact.left_load_n,
-            measured_double_support=contact.left_load_n > 0.0
-            and contact.right_load_n > 0.0,
-            step_index=int(segment.step_index[row]),
-        )
 
-
-def _ticks(duration_s: float) -> int:
-    return max(1, microseconds(duration_s) // CONTROL_PERIOD_US)
-
-
-def _pair(values: NDArray[np.float64]) -> tuple[float, float]:
-    """Return two plain numbers; zeros where the physics gave none."""
-    x, y = float(values[0]), float(values[1])
+def _pair(x: float, y: float) -> tuple[float, float]:
+    """Return two numbers; zeros where the physics gave none."""
     return (x, y) if math.isfinite(x + y) else (0.0, 0.0)

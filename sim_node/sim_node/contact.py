@@ -38,7 +38,8 @@ def floor_contact(
     nearest = 0.0
     for point in points:
         force = point[_NORMAL_FORCE]
-        nearest = min(nearest, point[_DISTANCE])
+        if point[_DISTANCE] < nearest:
+            nearest = point[_DISTANCE]
         if force > 0.0:
             position = point[_POSITION_ON_B]
             moment_x += force * position[0]

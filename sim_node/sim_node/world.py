@@ -22,6 +22,8 @@ from sim_node.quiet import engine_chatter_dropped
 with engine_chatter_dropped():
     import pybullet
 
+Vector = tuple[float, float, float]
+
 GRAVITY_M_S2 = 9.81
 # Share of its position and speed errors that the servo takes back per tick.
 POSITION_GAIN = 0.5
@@ -194,8 +196,8 @@ class World:
             bodyA=self.robot, bodyB=self.floor, physicsClientId=self.client
         )
 
-    def waist(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return position [m] and velocity [m/s] of the waist, (3,) each."""
+    def waist(self) -> tuple[Vector, Vector]:
+        """Return position [m] and velocity [m/s] of the waist."""
         position, orientation = pybullet.getBasePositionAndOrientation(
             self.robot, physicsClientId=self.client
         )
@@ -207,9 +209,17 @@ class World:
             orientation, (0.0, 0.0, -BIPED.torso_com_height)
         )
         wx, wy, wz = spin
+        x, y, z = position
+        vx, vy, vz = velocity
         # Plain numbers: numpy's cross product alone would take longer than all of this.
-        turning = (wy * dz - wz * dy, wz * dx - wx * dz, wx * dy - wy * dx)
-        return np.add(position, (dx, dy, dz)), np.add(velocity, turning)
+        return (
+            (x + dx, y + dy, z + dz),
+            (
+                vx + (wy * dz - wz * dy),
+                vy + (wz * dx - wx * dz),
+                vz + (wx * dy - wy * dx),
+            ),
+        )
 
     # -- states --------------------------------------------------------------------
 

@@ -88,7 +88,7 @@ def test_the_joints_stay_within_0_003_rad_of_their_references(completed):
 
 
 def test_five_steps_with_the_last_closing_the_feet_go_0_4_m(completed):
-    gone = completed.waist[-1] - completed.waist[0]
+    gone = np.subtract(completed.waist[-1], completed.waist[0])
     np.testing.assert_allclose(gone, [0.4, 0.0, 0.0], rtol=0, atol=0.001)
 
 

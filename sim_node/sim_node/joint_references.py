@@ -1,0 +1,78 @@
+"""What the joints are asked to do: a waist segment, solved for the legs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from biped_description import kinematics
+from biped_description.joints import JOINT_NAMES
+from msgs_json.segment import WaistSegment
+from msgs_json.timing import CONTROL_PERIOD_S
+
+PlannedPhase = tuple[bool, bool, int]
+"""The gait's phase at one control tick: right support, double support, step index."""
+
+
+@dataclass(frozen=True)
+class JointReferences:
+    """A segment with the joint motion that follows it, as plain numbers by row."""
+
+    segment: WaistSegment
+    rows: int
+    """Rows that the legs can reach, from the first on."""
+    q: list[list[float]]
+    """(rows, 12) [rad]"""
+    dq: list[list[float]]
+    """(rows - 1, 12) from each row to the next [rad/s]"""
+    zmp: list[list[float]]
+    """(rows, 2) [m]"""
+    phase: list[PlannedPhase]
+    """(rows,)"""
+
+
+def standing(start: WaistSegment) -> JointReferences:
+    """Return references that hold a stance and lead nowhere."""
+    return JointReferences(start, rows=1, q=[], dq=[], zmp=[], phase=_phases(start, 1))
+
+
+def solve(segment: WaistSegment, rows: int) -> tuple[JointReferences, int]:
+    """Return the references of a segment as far as the legs can follow it.
+
+    Args:
+        segment: C-contiguous float64 arrays.
+        rows: how many of its rows to use.
+
+    Returns:
+        The references, and the status of `kinematics.solve_legs`.
+
+    Raises:
+        ValueError: a number of the segment is not finite.
+    """
+    q = np.empty((rows, len(JOINT_NAMES)))
+    status, row, _ = kinematics.solve_legs(
+        segment.waist[:rows], segment.left_foot[:rows], segment.right_foot[:rows], q
+    )
+    zmp = segment.zmp_reference[:rows]
+    if status == kinematics.NOT_FINITE:
+        raise ValueError(f"segment has a pose that is not finite, row {row}")
+    # A sum is finite only if all of its terms are.
+    if not math.isfinite(zmp.sum()):
+        raise ValueError("segment has a ZMP reference that is not finite")
+    references = JointReferences(
+        segment,
+        rows=rows if status == kinematics.SOLVED else row,
+        q=q.tolist(),
+        dq=((q[1:] - q[:-1]) / CONTROL_PERIOD_S).tolist(),
+        zmp=zmp.tolist(),
+        phase=_phases(segment, rows),
+    )
+    return references, status
+
+
+def _phases(segment: WaistSegment, rows: int) -> list[PlannedPhase]:
+    flags = segment.right_support, segment.double_support, segment.step_index
+    columns = (column[:rows].tolist() for column in flags)
+    return list(zip(*columns, strict=True))
