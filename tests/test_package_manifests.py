@@ -1,0 +1,144 @@
+"""What the ROS packages say of themselves agrees with their code and with pip."""
+
+import ast
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomllib
+
+TOP = Path(__file__).resolve().parents[1]
+FOLDERS = sorted(file.parent for file in TOP.glob("ros_ws/src/*/package.xml"))
+OWN = {folder.name for folder in FOLDERS}
+
+ROSDEP_KEYS = {
+    "argcomplete": "python3-argcomplete",
+    "matplotlib": "python3-matplotlib",
+    "numpy": "python3-numpy",
+    "pybullet": "python3-pybullet-pip",
+    "rich": "python3-rich",
+    "yaml": "python3-yaml",
+}
+"""Of what is imported from neither ROS nor the standard library."""
+FROM_PIP = {"mcap", "mcap_ros2", "msgspec", "numba", "pyarrow", "zstandard"}
+"""Named in a comment of package.xml: rosdep has no key, or none for Jazzy's Ubuntu."""
+_MESSAGE_TYPE = re.compile(r"(\w+)/(?:msg|srv)/[A-Z]\w*")
+
+each_package = pytest.mark.parametrize("folder", FOLDERS, ids=lambda f: f.name)
+
+
+def manifest(folder: Path) -> ElementTree.Element:
+    """Return the root of package.xml, with its comments."""
+    builder = ElementTree.TreeBuilder(insert_comments=True)
+    parser = ElementTree.XMLParser(target=builder)
+    return ElementTree.parse(folder / "package.xml", parser).getroot()
+
+
+def setup_arguments(folder: Path) -> dict[str, Any]:
+    """Return what setup.py gives to setuptools, as far as it is literal."""
+    (call,) = (
+        node
+        for node in ast.walk(ast.parse((folder / "setup.py").read_text()))
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "setup"
+    )
+    return {
+        keyword.arg: ast.literal_eval(keyword.value)
+        for keyword in call.keywords
+        if keyword.arg in ("version", "entry_points")
+    }
+
+
+def project() -> dict[str, Any]:
+    """Return the [project] table of pyproject.toml."""
+    return tomllib.loads((TOP / "pyproject.toml").read_text())["project"]
+
+
+def used_modules(folder: Path) -> set[str]:
+    """Return the top-level modules from elsewhere that a package's code needs."""
+    trees = (
+        ast.parse(file.read_text()) for file in folder.glob(f"{folder.name}/**/*.py")
+    )
+    used = {name for tree in trees for name in _named_modules(tree)}
+    return used - {folder.name} - sys.stdlib_module_names
+
+
+def _named_modules(tree: ast.AST) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            yield node.module.split(".")[0]
+        elif isinstance(node, ast.Constant) and (
+            named := _MESSAGE_TYPE.fullmatch(str(node.value))
+        ):
+            yield named[1]  # such as std_msgs of "std_msgs/msg/String"
+
+
+@each_package
+def test_package_xml_names_what_the_code_imports(folder: Path) -> None:
+    named = {element.text for element in manifest(folder).iter("exec_depend")}
+    needed = used_modules(folder) - FROM_PIP
+    assert {ROSDEP_KEYS.get(module, module) for module in needed} - named == set()
+
+
+@each_package
+def test_a_comment_in_package_xml_names_what_comes_from_pip(folder: Path) -> None:
+    comments = " ".join(
+        comment.text or "" for comment in manifest(folder).iter(ElementTree.Comment)
+    )
+    assert used_modules(folder) & FROM_PIP - set(re.findall(r"\w+", comments)) == set()
+
+
+@each_package
+def test_package_xml_names_no_package_of_ours_that_the_code_does_not(
+    folder: Path,
+) -> None:
+    named = {element.text for element in manifest(folder).iter("exec_depend")}
+    code = "".join(file.read_text() for file in folder.glob(f"{folder.name}/**/*.py"))
+    assert {name for name in named & OWN if name not in code} == set()
+
+
+@each_package
+def test_every_version_is_that_of_the_distribution(folder: Path) -> None:
+    versions = {
+        manifest(folder).findtext("version"),
+        setup_arguments(folder)["version"],
+        project()["version"],
+    }
+    assert len(versions) == 1
+
+
+@each_package
+def test_a_package_is_built_as_ament_python(folder: Path) -> None:
+    root = manifest(folder)
+    assert root.get("format") == "3"
+    assert root.findtext("name") == folder.name
+    assert root.findtext("export/build_type") == "ament_python"
+
+
+def executables() -> dict[str, str]:
+    """Return "module:function" by "package/executable", as pip gets to know them."""
+    return project()["entry-points"]["biped.nodes"]
+
+
+def test_pip_and_colcon_offer_the_same_executables() -> None:
+    by_colcon = {
+        f"{folder.name}/{name.strip()}": target.strip()
+        for folder in FOLDERS
+        for script in setup_arguments(folder)
+        .get("entry_points", {})
+        .get("console_scripts", [])
+        for name, target in [script.split("=")]
+    }
+    assert by_colcon == executables()
+
+
+@pytest.mark.parametrize("name", executables())
+def test_what_an_executable_calls_is_there(name: str) -> None:
+    entry = EntryPoint(name, executables()[name], group="biped.nodes")
+    assert callable(entry.load())
