@@ -179,8 +179,14 @@ class SimNode(GuardedNode):
             self._begin()
 
     def _connected(self) -> bool:
+        waited_s = time.monotonic() - self._heard
+        recorders = (
+            self._settings.recorders if waited_s < self._settings.timeout_s else 0
+        )
+        if self._ticks.listeners() < recorders:
+            return False
         listeners = self._observations.get_subscription_count()
-        return listeners >= _LISTENERS and all(
+        return listeners >= _LISTENERS + recorders and all(
             self.count_publishers(topic.name) > 0
             for topic in (topics.WAIST_REFERENCE, topics.CORRECTION, topics.EPISODE)
         )

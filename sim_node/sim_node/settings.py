@@ -94,16 +94,45 @@ class SimNodeSettings:
         choices=("lockstep", "realtime"),
     )
     realtime_factor: float = setting(
-        1.0, "", "simulated seconds per second, in real time", above=0.0, upper=20.0
+        1.0,
+        "",
+        "simulated seconds per second, in real time",
+        above=0.0,
+        upper=20.0,
+        live=True,
     )
     segment_rows: int = setting(
         60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
     )
     publish_every_ticks: int = setting(
-        1, "control ticks", "1 publishes at 500 Hz, 10 at 50 Hz", lower=1, upper=1000
+        1,
+        "control ticks",
+        "1 publishes at 500 Hz, 10 at 50 Hz",
+        lower=1,
+        upper=1000,
+        live=True,
+    )
+    markers_every_ticks: int = setting(
+        20,
+        "control ticks",
+        "20 publishes markers and torso pose at 25 Hz; 0: never",
+        lower=0,
+        upper=1000,
+        live=True,
     )
     timeout_s: float = setting(
-        5.0, "s", "silence of a peer after which a walk is given up", above=0.0
+        5.0,
+        "s",
+        "silence of a peer after which a walk is given up",
+        above=0.0,
+        live=True,
+    )
+    recorders: int = setting(
+        0,
+        "",
+        "recorders to wait for, timeout_s at most, before the first walk",
+        lower=0,
+        upper=10,
     )
 
     def __post_init__(self) -> None:

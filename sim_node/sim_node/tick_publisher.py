@@ -40,6 +40,18 @@ class TickPublisher:
         self._last_phase: PhaseFlags | None = None
         self._phase_message = b""
 
+    def listeners(self) -> int:
+        """Return how many are connected to every one of the topics."""
+        publishers = (
+            self._clock,
+            self._states,
+            self._references,
+            self._zmp,
+            self._zmp_reference,
+            self._phase,
+        )
+        return min(int(each.get_subscription_count()) for each in publishers)
+
     def publish(self, tick: ControlTick) -> None:
         """Publish a tick, if it is its turn."""
         at = tick.clock_ticks

@@ -45,6 +45,7 @@ def node_parameters(
     frozen: bool = False,
     timeout_s: float = 5.0,
     listen_s: float = 1.5,
+    recorders: int = 0,
 ) -> NodeParameters:
     """Return the settings of the three nodes.
 
@@ -58,6 +59,7 @@ def node_parameters(
         frozen: walk greedily, learn nothing.
         timeout_s: silence of a peer after which a walk is given up.
         listen_s: how long the learner listens for another one first.
+        recorders: for which the robot waits with its first walk.
     """
     return NodeParameters(
         sim=SimNodeSettings(
@@ -67,6 +69,7 @@ def node_parameters(
             publish_every_ticks=publish_every_ticks,
             pace=pace,
             timeout_s=timeout_s,
+            recorders=recorders,
         ),
         trajectory=TrajectorySettings(
             gait=settings.gait,

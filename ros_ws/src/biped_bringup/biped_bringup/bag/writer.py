@@ -307,10 +307,16 @@ class BagWriter:
         self._failed = True
 
 
+def holds_bag(folder: Path) -> bool:
+    """Return whether a folder is a bag, or has been begun as one."""
+    return (folder / FILE_NAME).exists() or any(folder.glob("*.mcap"))
+
+
 def fresh_folder(folder: Path) -> Path:
-    """Return the folder, or with _2, _3, ... behind it the first that is not there."""
-    names = (folder.with_name(f"{folder.name}_{n}") for n in itertools.count(2))
-    return next(path for path in itertools.chain((folder,), names) if not path.exists())
+    """Return the folder, or with _2, _3, ... behind it the first that is no bag."""
+    numbered = (folder.with_name(f"{folder.name}_{n}") for n in itertools.count(2))
+    candidates = itertools.chain((folder,), numbered)
+    return next(path for path in candidates if not holds_bag(path))
 
 
 def _claim(folder: Path) -> None:
@@ -321,5 +327,5 @@ def _claim(folder: Path) -> None:
         OSError: it cannot be made or read.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    if (folder / FILE_NAME).exists() or any(folder.glob("*.mcap")):
+    if holds_bag(folder):
         raise BagError(f"{folder}: holds a bag already, which is never overwritten")

@@ -18,9 +18,16 @@ from biped_bringup.cli.options import (
     settings_of,
     writable_folder,
 )
+from biped_bringup.cli.recording import (
+    add_recording_options,
+    bag_folder,
+    bag_report,
+    recorder_parameters,
+)
 from biped_bringup.cli.signals import stop_requests
 from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.node_parameters import node_parameters
+from biped_bringup.recorder.run_record import run_record
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.supervisor.environment import (
     DISCOVERY_RANGES,
@@ -28,6 +35,7 @@ from biped_bringup.supervisor.environment import (
     private_domain,
 )
 from biped_bringup.supervisor.supervisor import (
+    RECORDER,
     START_ORDER,
     NodeFailureError,
     Supervisor,
@@ -38,6 +46,7 @@ from trajectory_node.waist_reference import WaistReference
 
 NODE_FAILURE = 3
 _DEFAULT_OUT = Path("bags/up")
+_ALL_NODES = ",".join(name.removesuffix("_node") for name in START_ORDER)
 
 
 def add_parser(verbs: Any) -> None:
@@ -45,8 +54,10 @@ def add_parser(verbs: Any) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "up",
         help="learn, or walk, on the ROS 2 graph: three nodes, supervised",
-        description="Start trajectory_node, learner_node and sim_node as processes, "
-        "watch them, restart them, and end them all. Ends when the walk is learned, or "
+        description="Start a recorder of every topic, trajectory_node, learner_node and "
+        "sim_node as processes, watch them, restart them, and end them all, the recorder "
+        "last. A recorder that cannot go on (disk full, folder unusable) does not stop "
+        "the walk. Ends when the walk is learned, or "
         "after --episodes. Exit status 0 when learned (or walked, with --greedy), 1 "
         "when not, 2 for wrong input, 3 when a node could not be kept running, 130 "
         "when interrupted.",
@@ -76,15 +87,15 @@ def add_parser(verbs: Any) -> None:
         type=Path,
         default=_DEFAULT_OUT,
         metavar="DIR",
-        help=f"folder for {MEMORY_FILE}, parameter files and logs "
+        help=f"folder for {MEMORY_FILE}, bags, parameter files and logs "
         f"(default {_DEFAULT_OUT})",
     )
     parser.add_argument(
         "--nodes",
-        default=",".join(name.removesuffix("_node") for name in START_ORDER),
+        default=_ALL_NODES,
         metavar="A,B",
-        help="which nodes to start here, of trajectory,learner,sim (default all); the "
-        "others may run on another machine, see --domain and --discovery",
+        help="which nodes to start here, of recorder,trajectory,learner,sim (default "
+        "all); the others may run on another machine, see --domain and --discovery",
     )
     parser.add_argument(
         "--domain",
@@ -108,6 +119,7 @@ def add_parser(verbs: Any) -> None:
     parser.add_argument(
         "--no-view", action="store_true", help="plain lines instead of a live screen"
     )
+    add_recording_options(parser)
     add_settings_options(parser)
     parser.set_defaults(run=run)
 
@@ -119,15 +131,33 @@ def run(options: argparse.Namespace) -> int:
     memory_file = folder / MEMORY_FILE
     settings, seed = _settings_and_seed(options, memory_file)
     WaistReference(settings.gait, settings.correction)  # refuses infeasible gaits here
+    bag = bag_folder(options, names)
+    max_episodes = 1 if options.greedy else options.episodes or 0
     parameters = node_parameters(
         settings,
         seed,
         checkpoint_file=str(memory_file),
-        max_episodes=1 if options.greedy else options.episodes or 0,
+        max_episodes=max_episodes,
         publish_every_ticks=max(1, options.publish_every),
         pace=options.pace,
         frozen=options.greedy,
+        recorders=0 if bag is None else 1,
     ).flat()
+    if bag is None:
+        names = [name for name in names if name != RECORDER]
+    else:
+        begun_with = memory_file if options.greedy or options.resume else None
+        run_data = run_record(
+            settings,
+            seed,
+            pace=options.pace,
+            frozen=options.greedy,
+            max_episodes=max_episodes,
+            memory_file=begun_with,
+        )
+        parameters[RECORDER] = recorder_parameters(
+            bag, run_data, begun_with, options.record_split
+        )
     domain = private_domain() if options.domain is None else options.domain
     environment = node_environment(domain, options.discovery)
     os.environ.update(environment)  # the supervisor's own node, too
@@ -158,6 +188,8 @@ def run(options: argparse.Namespace) -> int:
             failure = error
         finally:
             supervisor.stop()
+    if bag is not None:
+        print("\n".join(bag_report(bag, supervisor)))
     if failure is not None:
         print(f"failed: {failure}; logs are in {folder}")
         return NODE_FAILURE
@@ -168,7 +200,7 @@ def _nodes(text: str) -> list[str]:
     names = [f"{name.strip()}_node" for name in text.split(",")]
     unknown = [name for name in names if name not in START_ORDER]
     if unknown:
-        raise CommandError(f"--nodes {text}: must be among trajectory,learner,sim")
+        raise CommandError(f"--nodes {text}: must be among {_ALL_NODES}")
     return names
 
 

@@ -21,6 +21,7 @@ class Child:
     def __init__(
         self,
         name: str,
+        module: str,
         parameter_file: Path,
         environment: Mapping[str, str],
         log_file: Path,
@@ -29,7 +30,8 @@ class Child:
         """Prepare; start nothing yet.
 
         Args:
-            name: of the node and of its package.
+            name: of the node.
+            module: that runs it.
             parameter_file: YAML of its ROS parameters.
             environment: of the process.
             log_file: takes everything that the process prints.
@@ -37,8 +39,10 @@ class Child:
         """
         self.name = name
         self.starts = 0
+        self.last_line = ""
+        """What it printed last."""
         self._command = [
-            sys.executable, "-m", f"{name}.node",
+            sys.executable, "-m", module,
             "--ros-args", "--params-file", str(parameter_file),
         ]  # fmt: skip
         self._environment = dict(environment)
@@ -104,6 +108,7 @@ class Child:
             for line in stream:
                 log.write(line)
                 log.flush()
+                self.last_line = line.strip() or self.last_line
                 self._show(self.name, line.rstrip())
 
 

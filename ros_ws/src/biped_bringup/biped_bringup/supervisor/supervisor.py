@@ -3,6 +3,8 @@
 What failures do:
     a node dies: it is started again after a growing pause; the fifth time within ten
         seconds everything is ended, and the exit status says so.
+    the recorder says that it cannot go on (disk full, folder unusable), or keeps dying:
+        the recording has stopped, the walk goes on; `done_without` says why.
     a node lives but has said nothing for a while: it is killed, and counts as died.
     SIGINT, SIGTERM: the nodes are asked to end, last started first; who does not, is
         terminated and then killed.
@@ -23,9 +25,18 @@ import yaml
 from biped_bringup.supervisor.child import Child
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
+from msgs_json.ros.running import REFUSED, WRONG_INPUT
 
-# The robot comes last: when it offers its first walk, everybody listens.
-START_ORDER = ("trajectory_node", "learner_node", "sim_node")
+RECORDER = "recorder_node"
+# The recorder comes first and ends last: it misses nothing. The robot comes last: when
+# it offers its first walk, everybody listens.
+START_ORDER = (RECORDER, "trajectory_node", "learner_node", "sim_node")
+_MODULES = {
+    RECORDER: "biped_bringup.recorder.node",
+    "trajectory_node": "trajectory_node.node",
+    "learner_node": "learner_node.node",
+    "sim_node": "sim_node.node",
+}
 _TURN_S = 0.1
 
 
@@ -66,6 +77,8 @@ class Supervisor:
             patience: how long to wait for what.
         """
         self.children: dict[str, Child] = {}
+        self.done_without: dict[str, str] = {}
+        """Nodes that have ended for good while the run goes on, and why."""
         self._budgets: dict[str, RestartBudget] = {}
         self._show = show
         self._patience = patience or Patience()
@@ -75,7 +88,9 @@ class Supervisor:
                 content = {name: {"ros__parameters": dict(parameters[name])}}
                 file.write_text(yaml.safe_dump(content))
                 log = folder / f"{name}.log"
-                self.children[name] = Child(name, file, environment, log, show)
+                self.children[name] = Child(
+                    name, _MODULES[name], file, environment, log, show
+                )
                 self._budgets[name] = RestartBudget()
         self.graph = GraphWatch(int(environment["ROS_DOMAIN_ID"]))
 
@@ -120,13 +135,16 @@ class Supervisor:
                 self._restart(child, stopped)
                 return
             if time.monotonic() > end:
-                raise NodeFailureError(
-                    f"{child.name} did not appear on the graph within "
-                    f"{self._patience.ready_s:g} s"
+                self._give_up(
+                    child,
+                    f"did not appear on the graph within {self._patience.ready_s:g} s",
                 )
+                return
         self._show("supervisor", f"{child.name} is ready (process {child.pid})")
 
     def _look_after(self, child: Child, stopped: Callable[[], bool]) -> None:
+        if child.name in self.done_without:
+            return
         if not child.running:
             if not stopped():
                 self._restart(child, stopped)
@@ -143,15 +161,32 @@ class Supervisor:
 
     def _restart(self, child: Child, stopped: Callable[[], bool]) -> None:
         status = child.exit_status
+        if child.name == RECORDER and status in (REFUSED, WRONG_INPUT):
+            child.wait(self._patience.end_s)  # until all that it said has been read
+            self._give_up(child, child.last_line)
+            return
         delay_s = self._budgets[child.name].failed(time.monotonic())
         if delay_s is None:
-            raise NodeFailureError(
-                f"{child.name} died too often (last exit status {status}); "
-                "its log says why"
+            self._give_up(
+                child,
+                f"died too often (last exit status {status}); its log says why",
             )
+            return
         self._show(
             "supervisor",
             f"{child.name} died (exit status {status}), starts again in {delay_s:g} s",
         )
         self.graph.spin(delay_s)
         self._start(child, stopped)
+
+    def _give_up(self, child: Child, reason: str) -> None:
+        """Do without a node, if the run can.
+
+        Raises:
+            NodeFailureError: it cannot.
+        """
+        if child.name != RECORDER:
+            raise NodeFailureError(f"{child.name} {reason}")
+        child.signal(signal.SIGKILL)
+        self.done_without[child.name] = reason
+        self._show("supervisor", f"{child.name}: {reason}; the walk goes on")

@@ -1,0 +1,126 @@
+"""What `biped up` records: options, the recorder's parameters, the summary."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+from biped_bringup.bag.errors import BagError
+from biped_bringup.bag.metadata import read_metadata
+from biped_bringup.bag.writer import holds_bag
+from biped_bringup.cli.errors import CommandError
+from biped_bringup.recorder.node import LOST_KEY, STATE_KEY
+from biped_bringup.recorder.settings import RecorderSettings
+from biped_bringup.supervisor.supervisor import RECORDER, Supervisor
+from msgs_json.ros.parameters import flattened
+from msgs_json.settings import to_mapping
+
+NOWHERE = "none"
+
+
+def add_recording_options(parser: argparse.ArgumentParser) -> None:
+    """Add --record and --record-split."""
+    group = parser.add_argument_group("recording")
+    group.add_argument(
+        "--record",
+        metavar="DIR",
+        help="bag to record every topic to, MCAP in the layout of rosbag2 "
+        f"(default: a fresh bag_TIME in --out); {NOWHERE}: do not record",
+    )
+    group.add_argument(
+        "--record-split",
+        metavar="HOW",
+        type=_split,
+        default={},
+        help="begin a new file of the bag at size=MB, or after episodes=N",
+    )
+
+
+def bag_folder(options: argparse.Namespace, names: list[str]) -> Path | None:
+    """Return where to record to, None for nowhere.
+
+    Args:
+        options: with `record` and `out`.
+        names: of the nodes to start.
+
+    Raises:
+        CommandError: a bag is there already, or no recorder is to be started.
+    """
+    if options.record == NOWHERE:
+        return None
+    if RECORDER not in names:
+        if options.record is not None:
+            raise CommandError(
+                f"--record {options.record}: needs the recorder among --nodes"
+            )
+        return None
+    if options.record is None:
+        now = datetime.now(timezone.utc)
+        return Path(options.out).resolve() / f"bag_{now:%Y%m%dT%H%M%SZ}"
+    folder = Path(options.record).resolve()
+    if holds_bag(folder):
+        raise CommandError(f"--record {folder}: is a bag already; take another name")
+    return folder
+
+
+def recorder_parameters(
+    folder: Path,
+    run: Mapping[str, str],
+    memory_file: Path | None,
+    split: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Return the recorder's parameters, by name.
+
+    Args:
+        folder: of the bag.
+        run: kept in the bag as biped.run.
+        memory_file: kept in the bag, what the learner goes on from.
+        split: the settings that --record-split stands for.
+    """
+    settings = RecorderSettings(
+        folder=str(folder),
+        number_if_taken=True,  # a recorder that is started again begins a bag anew
+        expect_biped=True,
+        run=json.dumps(dict(run)),
+        attachment="" if memory_file is None else str(memory_file),
+        **split,
+    )
+    return flattened(to_mapping(settings))
+
+
+def bag_report(folder: Path, supervisor: Supervisor) -> list[str]:
+    """Return a line for every bag of the run, and one if recording has stopped."""
+    starts = supervisor.children[RECORDER].starts
+    further = [folder.with_name(f"{folder.name}_{n}") for n in range(2, starts + 1)]
+    lines = [_bag_line(bag) for bag in (folder, *further) if holds_bag(bag)]
+    reason = supervisor.done_without.get(RECORDER)
+    return lines if reason is None else [*lines, f"not all is recorded: {reason}"]
+
+
+def _bag_line(folder: Path) -> str:
+    try:
+        metadata = read_metadata(folder)
+    except BagError as error:
+        return f"bag     {error}"
+    if STATE_KEY not in metadata.custom:
+        return f"bag     {folder}: cut off; biped bag recover makes it whole"
+    return (
+        f"bag     {folder}: {metadata.message_count} messages, "
+        f"{metadata.custom.get(LOST_KEY, 'unknown')} lost"
+    )
+
+
+def _split(text: str) -> dict[str, Any]:
+    kind, _, number = text.partition("=")
+    settings = {
+        "size": ("size", "max_file_mb"),
+        "episodes": ("episode", "episodes_per_file"),
+    }
+    if kind not in settings or not number.isdecimal() or int(number) < 1:
+        raise argparse.ArgumentTypeError(f"{text}: must be size=MB or episodes=N")
+    split, key = settings[kind]
+    return {"split": split, key: int(number)}
