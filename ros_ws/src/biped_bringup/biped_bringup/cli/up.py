@@ -54,10 +54,10 @@ def add_parser(verbs: Any) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "up",
         help="learn, or walk, on the ROS 2 graph: three nodes, supervised",
-        description="Start a recorder of every topic, trajectory_node, learner_node and "
-        "sim_node as processes, watch them, restart them, and end them all, the recorder "
-        "last. A recorder that cannot go on (disk full, folder unusable) does not stop "
-        "the walk. Ends when the walk is learned, or "
+        description="Start a recorder of every topic, trajectory_node, learner_node "
+        "and sim_node as processes, watch them, restart them, and end them all, the "
+        "recorder last. A recorder that cannot go on (disk full, folder unusable) does "
+        "not stop the walk. Ends when the walk is learned, or "
         "after --episodes. Exit status 0 when learned (or walked, with --greedy), 1 "
         "when not, 2 for wrong input, 3 when a node could not be kept running, 130 "
         "when interrupted.",
