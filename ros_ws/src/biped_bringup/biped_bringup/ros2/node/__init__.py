@@ -1,0 +1,1 @@
+"""`ros2 node`: one module per verb."""

@@ -1,0 +1,1 @@
+"""`ros2 param`: one module per verb."""

@@ -1,0 +1,39 @@
+"""Set parameter."""
+
+from __future__ import annotations
+
+import argparse
+
+from biped_bringup.ros2.completion import completed
+from biped_bringup.ros2.errors import VerbError
+from biped_bringup.ros2.parameter_services import (
+    add_node_name_arguments,
+    complete_parameter_names,
+    parameter_services,
+)
+from biped_bringup.ros2.parameter_text import typed_parameter
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the verb."""
+    add_node_name_arguments(parser)
+    completed(
+        parser.add_argument("parameter_name", help="name of the parameter"),
+        complete_parameter_names,
+    )
+    parser.add_argument("value", help="value of the parameter, in YAML")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Set one parameter.
+
+    Raises:
+        VerbError: the node is not there, or does not accept the value.
+    """
+    with parameter_services(args) as services:
+        (result,) = services.set([typed_parameter(args.parameter_name, args.value)])
+    reason = f": {result.reason}" if result.reason else ""
+    if not result.successful:
+        raise VerbError(f"Setting parameter failed{reason}")
+    print(f"Set parameter successful{reason}")
+    return 0
