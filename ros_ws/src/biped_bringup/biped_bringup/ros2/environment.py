@@ -22,3 +22,11 @@ def prepare_environment() -> None:
         ("FASTDDS_DEFAULT_PROFILES_FILE", str(_PROFILE)),
     ):
         os.environ.setdefault(name, value)
+
+
+def lasting_environment() -> dict[str, str]:
+    """Return the environment for a node that stays: without the verbs' profile."""
+    environment = dict(os.environ)
+    if environment.get("FASTDDS_DEFAULT_PROFILES_FILE") == str(_PROFILE):
+        del environment["FASTDDS_DEFAULT_PROFILES_FILE"]
+    return environment
