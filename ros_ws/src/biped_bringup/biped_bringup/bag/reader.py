@@ -26,6 +26,7 @@ from biped_bringup.bag.mcap_check import DAMAGE, DamagedFileError, check_file
 from biped_bringup.bag.metadata import FILE_NAME
 
 QOS_KEY = "offered_qos_profiles"
+TYPE_HASH_KEY = "topic_type_hash"
 _TRANSIENT_LOCAL = ("transient_local", 1)  # rosbag2 has written both
 
 
@@ -53,6 +54,8 @@ class BagTopic:
     """Of the messages: cdr."""
     qos: str
     """Offered QoS profiles, YAML as rosbag2 writes it."""
+    type_hash: str
+    """RIHS01 hash of the type; may be empty."""
     definition: str
     """Message definition with those it depends on (ros2msg)."""
     count: int
@@ -60,7 +63,10 @@ class BagTopic:
     @property
     def latched(self) -> bool:
         """Whether who comes later still gets the last message (transient local)."""
-        return is_latched(self.qos)
+        return any(
+            profile.get("durability") in _TRANSIENT_LOCAL
+            for profile in offered_qos(self.qos)
+        )
 
 
 @dataclass(frozen=True)
@@ -224,18 +230,16 @@ def bag_topic(channel: Channel, schema: Schema, count: int) -> BagTopic:
         type_name=schema.name,
         encoding=channel.message_encoding,
         qos=channel.metadata.get(QOS_KEY, ""),
+        type_hash=channel.metadata.get(TYPE_HASH_KEY, ""),
         definition=schema.data.decode(),
         count=count,
     )
 
 
-def is_latched(qos: str) -> bool:
-    """Return whether offered QoS profiles (YAML) are transient local."""
-    profiles: Any = yaml.safe_load(qos) if qos else None
-    return any(
-        isinstance(profile, dict) and profile.get("durability") in _TRANSIENT_LOCAL
-        for profile in profiles or ()
-    )
+def offered_qos(qos: str) -> list[dict[str, Any]]:
+    """Return the profiles of a topic's publishers; none where they are not known."""
+    profiles = yaml.safe_load(qos) if qos else None
+    return [profile for profile in profiles or () if isinstance(profile, dict)]
 
 
 def _summary(file: Path) -> Summary:
