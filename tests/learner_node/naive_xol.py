@@ -149,6 +149,10 @@ class NaiveXol:
         for i, j in enumerate(chosen):
             if (i, j) not in state.selected:
                 state.selected.add((i, j))
+                if 0 < self.settings.selection_memory <= state.selections[i][j]:
+                    state.selections[i][j] //= 2
+                    for failures in state.failures:
+                        failures[i][j] //= 2
                 state.selections[i][j] += 1
         if self.is_penalty_state(state):
             state.fixed = False
@@ -261,7 +265,7 @@ class NaiveXol:
                     state.E[i][j] *= self.settings.discount
         self.state = following
 
-    def reward(self, value, counts):
+    def reward(self, value, counts, whole_task=False):
         self.failures_in_a_row = 0
         for decision in self.queue:
             if not decision.state.fixed:
@@ -270,7 +274,8 @@ class NaiveXol:
                         decision.state.Q[i][j] += value * decision.state.E[i][j]
         if counts:
             mode = self.settings.fixed_mode
-            if mode.counted == "episode":
+            every = mode.counted == "queue_then_episode" and whole_task
+            if every or mode.counted == "episode":
                 visited = [state for state in self.states if state.selected]
             else:
                 visited = self.last_states(len(self.queue))

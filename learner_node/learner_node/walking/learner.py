@@ -126,7 +126,7 @@ class WalkLearner:
         self.estimate.update(terms.total)
         rewards = self.settings.rewards
         reward = rewards.success if success else rewards.goal
-        self.agent.reward(reward, counts=success)
+        self.agent.reward(reward, success, whole_task=self.schedule.complete)
         if success and self.schedule.count_success():
             self.agent.finish_subtask()
             if not self.schedule.complete:

@@ -91,7 +91,13 @@ class XolAgent:
                 self._chosen,
             )
         if penalties.count_selection(
-            k, self._chosen, self.episode, rules.selections, rules.last_episode
+            k,
+            self._chosen,
+            self.episode,
+            rules.selections,
+            rules.last_episode,
+            rules.failures,
+            self.settings.selection_memory,
         ):
             self._judge(k)
         self.queue.push(k, self._chosen)
@@ -109,12 +115,13 @@ class XolAgent:
         self.queue.decay(self.settings.discount)
         self.state = following
 
-    def reward(self, value: float, counts: bool) -> None:
+    def reward(self, value: float, counts: bool, whole_task: bool = False) -> None:
         """Reinforce every sub-rule in the queue (2(c)v) and fix states (Strategy 1).
 
         Args:
             value: rwd.
             counts: the reward raises TUC, once per state.
+            whole_task: it was earned on the whole task, not on a part of it.
         """
         self.failures_in_a_row = 0
         rules = self.rules
@@ -129,7 +136,9 @@ class XolAgent:
             rules.q[k, i, j] += value * queue.eligibility[k, i, j]
         if counts:
             mode = self.settings.fixed_mode
-            if mode.counted == "episode":
+            if mode.counted == "episode" or (
+                mode.counted == "queue_then_episode" and whole_task
+            ):
                 chosen_in = rules.last_episode[: self.states.count]
                 visited = np.flatnonzero((chosen_in == self.episode).any(axis=(1, 2)))
             else:

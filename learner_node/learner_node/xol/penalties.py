@@ -64,13 +64,24 @@ def count_selection(
     episode: int,
     selections: NDArray[Any],
     last_episode: NDArray[Any],
+    failures: NDArray[Any],
+    selection_memory: int,
 ) -> bool:
-    """Count the chosen sub-rules, once per episode each; return whether any was new."""
+    """Count the chosen sub-rules, once per episode each; return whether any was new.
+
+    Where `selection_memory` is not 0, a sub-rule that was selected so often has its
+    selections and failures halved first: what it led to long ago, with other rules
+    behind it, must not outvote what it leads to now.
+    """
     changed = False
     for i in range(chosen.shape[0]):
         j = chosen[i]
         if last_episode[k, i, j] != episode:
             last_episode[k, i, j] = episode
+            if 0 < selection_memory <= selections[k, i, j]:
+                selections[k, i, j] //= 2
+                for penalty in range(failures.shape[1]):
+                    failures[k, penalty, i, j] //= 2
             selections[k, i, j] += 1
             changed = True
     return changed

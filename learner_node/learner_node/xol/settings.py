@@ -51,11 +51,11 @@ class FixedModeSettings:
         15, "rewards", "K of Strategy 1: rewards after which a state is fixed", lower=1
     )
     counted: str = setting(
-        "queue",
+        "queue_then_episode",
         "",
-        "a reward counts for the states still in the queue, or for all states visited "
-        "in the episode",
-        choices=("queue", "episode"),
+        "states whose TUC a reward raises: those still in the queue, all that the "
+        "episode visited, or the latter only once the whole task is learned",
+        choices=("queue", "episode", "queue_then_episode"),
     )
     released_states: int = setting(
         3, "states", "how many fixed states ahead of a penalty are released", lower=0
@@ -106,6 +106,12 @@ class XolSettings:
     minimum_selections: int = setting(
         7, "episodes", "N0: selections before a sub-rule may be a penalty rule", lower=1
     )
+    selection_memory: int = setting(
+        28,
+        "episodes",
+        "a sub-rule selected so often has its selections and failures halved; 0: never",
+        lower=0,
+    )
     failure_threshold: float = setting(
         0.5, "", "lambda: failure rate above which a sub-rule is a penalty rule",
         lower=0.0, upper=1.0,
@@ -130,4 +136,12 @@ class XolSettings:
                 "failure_reach",
                 self.failure_reach,
                 f"must be at most queue_length = {self.queue_length}",
+            )
+        # Halved counts must still be enough to judge by.
+        if 0 < self.selection_memory < 2 * self.minimum_selections:
+            raise SettingsError(
+                "selection_memory",
+                self.selection_memory,
+                "must be 0 or at least twice minimum_selections = "
+                f"{self.minimum_selections}",
             )

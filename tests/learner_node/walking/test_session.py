@@ -23,7 +23,11 @@ from msgs_json.wire import decode, encode
 WALK_TICKS = 50
 SETTINGS = LearnerSettings(
     xol=XolSettings(
-        discount=0.5, queue_length=20, failure_reach=2, minimum_selections=1000
+        discount=0.5,
+        queue_length=20,
+        failure_reach=2,
+        minimum_selections=1000,
+        selection_memory=0,
     ),
     action=ActionSettings(alternatives=5),
     schedule=ScheduleSettings(

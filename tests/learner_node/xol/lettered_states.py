@@ -21,6 +21,7 @@ SETTINGS = XolSettings(
     queue_length=10,
     failure_reach=1,
     minimum_selections=1,
+    selection_memory=0,
     base_weight=1e12,
     states=StateSettings(radii=(1.0,)),
     fixed_mode=FixedModeSettings(rewards_to_fix=NEVER, patience_episodes=0),
@@ -88,10 +89,10 @@ def walk(agent, letters, taken):
         take(agent, *(int(j) for j in alternatives))
 
 
-def rewarded_walk(agent, letters, taken, value=1.0, counts=True):
+def rewarded_walk(agent, letters, taken, value=1.0, counts=True, whole_task=False):
     """Walk, be rewarded, and end the episode."""
     walk(agent, letters, taken)
-    agent.reward(value, counts)
+    agent.reward(value, counts, whole_task)
     agent.finish_episode()
 
 

@@ -48,12 +48,14 @@ def problems(draw):
     n_continuous = draw(st.integers(0, 3))
     decomposed = draw(st.booleans())
     queue_length = draw(st.integers(1, 8))
+    minimum_selections = draw(st.integers(1, 3))
     settings = XolSettings(
         discount=draw(st.sampled_from((0.8, 0.98, 1.0))),
         queue_length=queue_length,
         penalty_reach=draw(st.integers(1, 4)),
         failure_reach=draw(st.integers(1, queue_length)),
-        minimum_selections=draw(st.integers(1, 3)),
+        minimum_selections=minimum_selections,
+        selection_memory=draw(st.sampled_from((0, 2, 3))) * minimum_selections,
         failure_threshold=draw(st.sampled_from((0.0, 0.3, 0.5, 1.0))),
         base_weight=draw(st.sampled_from((0.5, 100.0))),
         decomposed=decomposed,
@@ -65,7 +67,7 @@ def problems(draw):
         fixed_mode=FixedModeSettings(
             strategy=draw(st.sampled_from(("strategy1", "strategy2", "none"))),
             rewards_to_fix=draw(st.integers(1, 3)),
-            counted=draw(st.sampled_from(("episode", "queue"))),
+            counted=draw(st.sampled_from(("queue", "episode", "queue_then_episode"))),
             released_states=draw(st.integers(0, 3)),
             patience_episodes=draw(st.integers(0, 3)),
             release=draw(st.sampled_from(("last_decisions", "nearest"))),
@@ -95,7 +97,7 @@ def runs(draw, max_episodes=12, max_steps=8):
     ends = st.one_of(
         st.tuples(
             st.just("reward"),
-            st.tuples(st.sampled_from(REWARDS), st.booleans()),
+            st.tuples(st.sampled_from(REWARDS), st.booleans(), st.booleans()),
         ),
         st.tuples(
             st.just("penalise"),
@@ -140,7 +142,8 @@ def seeded_calls(problem, rng, episodes=200, steps=12, n_points=7):
         if rng.random() < (0.9 if episode % 50 < 25 else 0.1):
             yield "penalise", (int(rng.integers(problem.n_penalties - 1)),)
         else:
-            yield "reward", (float(rng.choice(REWARDS)), bool(rng.random() < 0.7))
+            value, counts = float(rng.choice(REWARDS)), bool(rng.random() < 0.7)
+            yield "reward", (value, counts, episode >= 100)
         if rng.random() < 0.3:
             yield "finish_subtask", ()
         yield "finish_episode", ()

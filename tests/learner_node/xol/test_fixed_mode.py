@@ -76,6 +76,15 @@ def test_a_reward_counts_in_the_queue_or_in_the_whole_episode(counted, expected)
     assert [rewards_of(agent, letter) for letter in "ABCD"] == expected
 
 
+@pytest.mark.parametrize("whole_task, expected", [(False, [0, 1]), (True, [1, 1])])
+def test_a_reward_counts_beyond_the_queue_once_the_whole_task_is_done(
+    whole_task, expected
+):
+    agent = new_agent(queue_length=1, fixed_mode={"counted": "queue_then_episode"})
+    rewarded_walk(agent, "AB", "00", whole_task=whole_task)
+    assert [rewards_of(agent, letter) for letter in "AB"] == expected
+
+
 @pytest.mark.parametrize("counted", ("queue", "episode"))
 def test_a_reward_does_not_count_for_states_of_other_episodes(counted):
     agent = new_agent(fixed_mode={"counted": counted})

@@ -88,6 +88,33 @@ def test_selections_count_in_every_episode():
     assert selections_of(agent, "A") == [2, 1]
 
 
+def test_before_a_sub_rule_is_selected_beyond_its_memory_its_counts_are_halved():
+    agent = new_agent(minimum_selections=2, selection_memory=4, failure_threshold=1.0)
+    for _ in range(3):
+        failed_walk(agent, "A", "0")
+    rewarded_walk(agent, "A", "0")
+    rewarded_walk(agent, "A", "0")
+    assert (selections_of(agent, "A"), failures_of(agent, "A", 0)) == ([3, 0], [1, 0])
+
+
+def test_without_a_memory_counts_are_never_halved():
+    agent = new_agent(minimum_selections=2, selection_memory=0, failure_threshold=1.0)
+    for _ in range(40):
+        failed_walk(agent, "A", "0")
+    assert selections_of(agent, "A") == failures_of(agent, "A", 0) == [40, 0]
+
+
+def test_what_used_to_succeed_is_judged_by_what_it_leads_to_now():
+    agent = new_agent(minimum_selections=2, selection_memory=4, failure_threshold=0.5)
+    for _ in range(1000):
+        rewarded_walk(agent, "A", "0")
+    failures = 0
+    while avoided(agent, "A") == [3, 3]:
+        failed_walk(agent, "A", "0")
+        failures += 1
+        assert failures <= 4
+
+
 def test_failures_count_once_per_episode():
     agent = new_agent(failure_reach=4)
     failed_walk(agent, "AAAA", "0000")
