@@ -1,0 +1,129 @@
+"""A learned walk in real time on the graph, and the same loop without ROS beside it.
+
+The loop without ROS is the machine's noise floor: the same thread with the same
+deadlines, the same robot, learner and trajectory, called directly.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.graph_run import Listener, run_graph
+from benchmarks.report import Figure
+from biped_bringup.node_parameters import node_parameters
+from biped_bringup.run_settings import load_settings
+from biped_bringup.supervisor.supervisor import Supervisor
+from biped_bringup.training import TrainingRun
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.observation import Observation
+from sim_node.pilot import Pilot
+from sim_node.realtime import Punctuality, RealtimeLoop
+from trajectory_node.waist_reference import WaistReference
+
+_RATE_HZ = 500.0
+_LOOK_AHEAD_TICKS = 50
+_LATENESS, _LATENCY = "control tick lateness", "observation to waist"
+_PERCENTILES = ("p50", "p99", "max")
+
+
+def measure() -> list[Figure]:
+    """Return punctuality on the graph, and of the bare loop."""
+    run = TrainingRun(load_settings("quick"), seed=0)
+    run.run(None, False, lambda _: True)
+    with tempfile.TemporaryDirectory() as folder:
+        memory_file = Path(folder) / "memory.npz"
+        run.save(memory_file)
+        listener = _walk_on_the_graph(run, memory_file)
+    floor = _walk_without_ros(run)
+    run.close()
+    heard, found = listener.arrivals_ns, listener.figures
+    rate_hz = (len(heard) - 1) / (heard[-1] - heard[0]) * 1e9
+    ticks = run.walker.walk_ticks
+    return [
+        Figure("missed 20 ms deadlines", float(found["missed 20 ms deadlines"]), "", 0),
+        Figure("control ticks not heard", ticks - len(heard), "", 0),
+        Figure("/joint_states", rate_hz, "Hz", _RATE_HZ + 1.0, _RATE_HZ - 1.0),
+        *_percentiles(_LATENESS, found, bound_ms=1.0),
+        *_percentiles(_LATENCY, found, bound_ms=5.0),
+        *_percentiles(_LATENESS, floor, name=f"without ROS: {_LATENESS}"),
+    ]
+
+
+def _percentiles(
+    key: str, found: dict[str, str], bound_ms: float | None = None, name: str = ""
+) -> list[Figure]:
+    return [
+        Figure(
+            f"{name or key}, {percentile}",
+            float(found[f"{key} {percentile} [ms]"]),
+            "ms",
+            bound_ms if percentile == "p99" else None,
+        )
+        for percentile in _PERCENTILES
+    ]
+
+
+def _walk_on_the_graph(run: TrainingRun, memory_file: Path) -> Listener:
+    parameters = node_parameters(
+        run.settings,
+        run.seed,
+        checkpoint_file=str(memory_file),
+        max_episodes=1,
+        pace="realtime",
+        frozen=True,
+    )
+
+    def walked(supervisor: Supervisor, listener: Listener) -> bool:
+        if supervisor.graph.result is None:
+            return False
+        if not supervisor.graph.result.completed:
+            raise RuntimeError(f"the walk ended: {supervisor.graph.result.end_cause}")
+        said = listener.figures.get("control ticks", "0")
+        return int(said) >= run.walker.walk_ticks
+
+    return run_graph(parameters.flat(), walked)
+
+
+class _DirectAnswer:
+    """Learner and trajectory, called in the loop's own thread."""
+
+    def __init__(self, run: TrainingRun) -> None:
+        settings = run.settings
+        self.reference = WaistReference(
+            settings.gait, settings.correction, _LOOK_AHEAD_TICKS
+        )
+        self.punctuality = Punctuality()
+        self.pilot = Pilot(run.walker.biped)
+        self._walk = run.session.greedy()
+        self.loop = RealtimeLoop(self.pilot, 1.0, self._answer, self.punctuality)
+        self.result: EpisodeResult | None = None
+
+    def _answer(self, observation: Observation) -> None:
+        answer: NDArray[np.float64] | EpisodeResult = self._walk.respond(observation)
+        if isinstance(answer, EpisodeResult):
+            self.result = answer
+        else:
+            segment = self.reference.segment(answer)
+            # After the pilot has taken note of the observation.
+            self.loop.request(
+                lambda: self.pilot.follow(observation.clock_ticks, segment)
+            )
+            self.loop.request(self.loop.segment_arrived)
+
+
+def _walk_without_ros(run: TrainingRun) -> dict[str, str]:
+    direct = _DirectAnswer(run)
+    direct.loop.start()
+    direct.loop.request(direct.loop.begin)
+    end = time.monotonic() + 60.0
+    while direct.result is None and time.monotonic() < end:
+        time.sleep(0.1)
+    direct.loop.stop()
+    if direct.result is None or not direct.result.completed:
+        raise RuntimeError(f"the walk without ROS was not walked: {direct.result}")
+    return direct.punctuality.figures()
