@@ -12,5 +12,10 @@ setup(
         (f"share/{NAME}", ["package.xml"]),
         (f"share/{NAME}/hook", ["hook/wheels_prefix.sh"]),
     ],
-    entry_points={"console_scripts": ["biped = biped_bringup.cli.main:main"]},
+    entry_points={
+        "console_scripts": [
+            "biped = biped_bringup.cli.main:main",
+            "recorder = biped_bringup.recorder.node:main",
+        ]
+    },
 )
