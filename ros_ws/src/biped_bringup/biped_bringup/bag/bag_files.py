@@ -23,8 +23,9 @@ class BagFiles:
 
     @property
     def size(self) -> int:
-        """Bytes of the data files."""
-        return sum(file.stat().st_size for file in self.data)
+        """Bytes of everything in the folder, as rosbag2 counts them, or of the file."""
+        files = self.path.iterdir() if self.path.is_dir() else self.data
+        return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def broken(bag: Path, why: str) -> BagError:

@@ -1,6 +1,11 @@
-"""Hand topics and messages of one bag on to the writer of another."""
+"""Make a new bag out of another one: all of it or nothing."""
 
 from __future__ import annotations
+
+import contextlib
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
 
 from biped_bringup.bag.errors import BagError
 from biped_bringup.bag.reader import BagMessage, BagTopic, offered_qos
@@ -8,6 +13,33 @@ from biped_bringup.bag.writer import MESSAGE_ENCODING, BagWriter, RecordedMessag
 
 OWN_RECORD = "rosbag2"
 """Metadata record that every writer writes itself, about its own bag."""
+
+
+def refuse_existing(out: Path) -> None:
+    """Return if a new bag can be made there.
+
+    Raises:
+        BagError: something is there already.
+    """
+    if out.exists() or out.is_symlink():
+        raise BagError(f"{out}: is there already, and is never overwritten")
+
+
+@contextlib.contextmanager
+def new_bag(out: Path) -> Iterator[BagWriter]:
+    """Write a bag that is gone again when the block fails; the block closes it.
+
+    Raises:
+        BagError: it cannot be written there.
+    """
+    writer = BagWriter(out)
+    try:
+        yield writer
+    except BaseException:
+        with contextlib.suppress(BagError):
+            writer.close()
+        shutil.rmtree(out, ignore_errors=True)
+        raise
 
 
 def add_topic(writer: BagWriter, topic: BagTopic) -> None:

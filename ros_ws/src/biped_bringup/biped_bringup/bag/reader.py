@@ -119,7 +119,7 @@ class BagReader:
 
     @property
     def size(self) -> int:
-        """Bytes of the MCAP files."""
+        """Bytes of all files of the bag."""
         return self._files.size
 
     @property

@@ -11,9 +11,9 @@ What failures do:
     the definition of a topic is lost (it stands in the first chunk and in the summary):
         messages of the topic count as lost.
     metadata.yaml is missing, damaged or out of date: the files are taken as they are.
-    all is damaged, or no file is MCAP: `UnrecoverableError`, nothing is written.
-    the output is there already, or cannot be written: `BagError`; what is there stays,
-        what was begun is removed.
+    all is damaged, or a file is not MCAP: `RecoveryFailedError`, nothing is written.
+    the output cannot be written: the same; what was begun is removed.
+    the output is there already: `BagError`, it is never overwritten.
 The broken bag is never changed.
 How losses are counted, see `losses`; a finished `metadata.yaml` counts, too. Without an
 end, messages that the recorder had not yet handed to the system (at most 0.1 s) leave
@@ -22,9 +22,7 @@ no trace: the report says that the end is missing.
 
 from __future__ import annotations
 
-import contextlib
 import mmap
-import shutil
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -42,7 +40,7 @@ from mcap.records import (
 from mcap.summary import Summary
 
 from biped_bringup.bag.bag_files import data_files
-from biped_bringup.bag.copying import OWN_RECORD, add_topic
+from biped_bringup.bag.copying import OWN_RECORD, add_topic, new_bag, refuse_existing
 from biped_bringup.bag.errors import BagError
 from biped_bringup.bag.losses import FileTally
 from biped_bringup.bag.mcap_check import (
@@ -60,8 +58,8 @@ from biped_bringup.bag.recovery_report import RecoveryReport, TopicRecovery
 from biped_bringup.bag.writer import BagWriter, RecordedMessage
 
 
-class UnrecoverableError(BagError):
-    """There is nothing in a bag that could be recovered."""
+class RecoveryFailedError(BagError):
+    """Nothing could be recovered, or what was could not be written."""
 
 
 def recover(bag: Path, out: Path) -> RecoveryReport:
@@ -72,32 +70,29 @@ def recover(bag: Path, out: Path) -> RecoveryReport:
         out: folder of the bag to write; must not exist.
 
     Raises:
-        UnrecoverableError: nothing can be recovered.
-        BagError: no such bag, or the output cannot be written.
+        RecoveryFailedError: there is nothing to recover, or no place for it.
+        BagError: no such bag, or the output is there already.
     """
     if not bag.exists():
         raise BagError(f"{bag}: no such file or folder")
-    files = data_files(bag) if bag.is_dir() else (bag,)
-    if out.exists():
-        raise BagError(f"{out}: is there already, and is never overwritten")
+    refuse_existing(out)
     if bag.resolve() in out.resolve().parents:
         raise BagError(f"{out}: must not be inside the broken bag")
-    writer = BagWriter(out)
+    report = RecoveryReport(str(bag), str(out))
     try:
-        recovery = _Recovery(RecoveryReport(str(bag), str(out)), writer)
-        for file in files:
-            recovery.add_file(file)
-        recovery.compare(_metadata(bag), files)
-        report = recovery.report
-        if not report.recovered and not report.nothing_lost:
-            raise UnrecoverableError(f"{bag}: holds no message that is whole")
-        report.duration_s = 1e-9 * (writer.metadata.end_ns - writer.metadata.start_ns)
-        writer.close({"recovered_from": bag.name})
-    except BaseException:
-        with contextlib.suppress(BagError):
-            writer.close()
-        shutil.rmtree(out, ignore_errors=True)
-        raise
+        files = data_files(bag) if bag.is_dir() else (bag,)
+        with new_bag(out) as writer:
+            recovery = _Recovery(report, writer)
+            for file in files:
+                recovery.add_file(file)
+            recovery.compare(_metadata(bag), files)
+            if not report.recovered and not report.nothing_lost:
+                raise BagError(f"{bag}: holds no message that is whole")
+            written = writer.metadata
+            report.duration_s = 1e-9 * (written.end_ns - written.start_ns)
+            writer.close({"recovered_from": bag.name})
+    except BagError as error:
+        raise RecoveryFailedError(str(error)) from None
     return report
 
 
@@ -122,7 +117,7 @@ class _Recovery:
         """Recover what is in a file.
 
         Raises:
-            UnrecoverableError: it is not MCAP.
+            BagError: it is not MCAP.
         """
         with mapped(file) as content:
             before = self.report.recovered
@@ -197,7 +192,7 @@ class _FileRecovery:
             else:
                 self._add(found)
         if not self._sound:
-            raise UnrecoverableError(f"{self._file}: not an MCAP file, or all damaged")
+            raise BagError(f"{self._file}: not an MCAP file, or all damaged")
         self._finish(end, summary)
 
     def _end(self) -> tuple[FileEnd | None, Summary | None]:

@@ -23,6 +23,16 @@ class TopicRecovery:
         """Whether messages were lost, or may have been."""
         return self.lost > 0 or not self.exact
 
+    def text(self) -> str:
+        """Return what was lost, for people."""
+        if self.exact:
+            count = f"{self.lost} of {self.recovered + self.lost} messages"
+        elif self.lost:
+            count = f"{self.lost} messages or more"
+        else:
+            count = "an unknown number of messages, if any"
+        return f"{count}, {self.lost_s:.3f} s"
+
 
 @dataclass
 class RecoveryReport:
@@ -77,15 +87,11 @@ class RecoveryReport:
             lines.append(
                 "the end is missing: what the recorder had not written yet is lost, too"
             )
-        for name, topic in sorted(self.topics.items()):
-            if topic.touched:
-                at_least = "" if topic.exact else "at least "
-                lines.append(
-                    f"lost: {name}: {at_least}{topic.lost} of "
-                    f"{topic.recovered + topic.lost} messages, {topic.lost_s:.3f} s"
-                )
+        lines += [
+            f"lost: {name}: {topic.text()}"
+            for name, topic in sorted(self.topics.items())
+            if topic.touched
+        ]
         if self.nothing_lost:
             lines.append("nothing was lost")
-        elif not self.lost:
-            lines.append("no message is known to be lost")
         return "\n".join(lines)

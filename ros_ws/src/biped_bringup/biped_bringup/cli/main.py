@@ -1,4 +1,4 @@
-"""`biped`: learn the walk, walk it, check a configuration.
+"""`biped`: learn the walk, walk it, check a configuration, work with bags.
 
 Exit status: 0 done; 1 an honest "not achieved" (walk not learned, walk failed);
 2 wrong input; 130 interrupted.
@@ -13,7 +13,8 @@ from collections.abc import Sequence
 
 import argcomplete
 
-from biped_bringup.cli import check, learn, up, walk
+from biped_bringup.bag.errors import BagError
+from biped_bringup.cli import bag, check, learn, up, walk
 from biped_bringup.cli.errors import CommandError
 from learner_node.checkpoint import CheckpointError
 from msgs_json.settings import SettingsError
@@ -32,7 +33,7 @@ def parser() -> argparse.ArgumentParser:
         epilog="exit status: 0 done, 1 not achieved, 2 wrong input, 130 interrupted",
     )
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for verb in (learn, walk, up, check):
+    for verb in (learn, walk, up, bag, check):
         verb.add_parser(verbs)
     return top
 
@@ -45,7 +46,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         status: int = options.run(options)
         sys.stdout.flush()
-    except (SettingsError, TrajectoryError, CheckpointError, CommandError) as error:
+    except (
+        SettingsError,
+        TrajectoryError,
+        CheckpointError,
+        CommandError,
+        BagError,
+    ) as error:
         print(f"biped {options.verb}: {error}", file=sys.stderr)
         return WRONG_INPUT
     except BrokenPipeError:
