@@ -12,7 +12,11 @@ import pytest
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.supervisor.environment import node_environment
-from biped_bringup.supervisor.supervisor import NodeFailureError, Supervisor
+from biped_bringup.supervisor.supervisor import (
+    NodeFailureError,
+    Patience,
+    Supervisor,
+)
 from learner_node.checkpoint import read_checkpoint
 
 SEED = 5
@@ -35,13 +39,14 @@ def parameters(folder, **changes):
 class Graph:
     """A supervisor in a thread of the test."""
 
-    def __init__(self, folder, domain, values=None):
+    def __init__(self, folder, domain, values=None, patience=None):
         self.lines = []
         self.supervisor = Supervisor(
             values or parameters(folder),
             node_environment(domain, "LOCALHOST"),
             folder,
             lambda who, line: self.lines.append(f"[{who}] {line}"),
+            patience,
         )
         self.failure = None
         self._stopped = threading.Event()
@@ -109,6 +114,19 @@ def test_a_learner_that_stalls_for_two_seconds_is_not_restarted(graph):
     os.kill(child.pid, signal.SIGCONT)
     assert graph.walks(3)
     assert child.starts == 1
+
+
+def test_a_node_without_a_heartbeat_is_killed_and_started_anew(tmp_path, domain):
+    graph = Graph(tmp_path, domain, patience=Patience(silence_s=5.0))
+    try:
+        assert graph.walks(1)
+        child = graph.supervisor.children["trajectory_node"]
+        os.kill(child.pid, signal.SIGSTOP)
+        assert graph.wait_for(lambda: child.starts == 2)
+        assert any("trajectory_node has been silent" in line for line in graph.lines)
+        assert graph.walks(2)
+    finally:
+        graph.stop()
 
 
 def test_the_silent_peer_is_reported(graph):
