@@ -19,7 +19,7 @@ def prepare_environment() -> None:
     for name, value in (
         ("AMENT_PREFIX_PATH", sys.prefix),
         ("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4"),
-        ("FASTDDS_DEFAULT_PROFILES_FILE", str(_PROFILE)),
+        ("FASTRTPS_DEFAULT_PROFILES_FILE", str(_PROFILE)),
     ):
         os.environ.setdefault(name, value)
 
@@ -27,6 +27,6 @@ def prepare_environment() -> None:
 def lasting_environment() -> dict[str, str]:
     """Return the environment for a node that stays: without the verbs' profile."""
     environment = dict(os.environ)
-    if environment.get("FASTDDS_DEFAULT_PROFILES_FILE") == str(_PROFILE):
-        del environment["FASTDDS_DEFAULT_PROFILES_FILE"]
+    if environment.get("FASTRTPS_DEFAULT_PROFILES_FILE") == str(_PROFILE):
+        del environment["FASTRTPS_DEFAULT_PROFILES_FILE"]
     return environment

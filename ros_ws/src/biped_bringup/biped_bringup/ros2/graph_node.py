@@ -7,8 +7,10 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import rclpy
+from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -20,6 +22,8 @@ HIDDEN_PREFIX = "_"
 DISCOVERY_S = 0.5
 
 _NAME = "_ros2cli"
+# The rest of Fast DDS's announcement period of 3 s.
+_PATIENCE_S = 2.5
 # How often the graph is looked at, and how soon Ctrl-C is obeyed.
 _POLL_S = 0.01
 _TURN_S = 0.1
@@ -78,18 +82,35 @@ def graph_node(args: argparse.Namespace, name: str | None = None) -> Iterator[No
 
 
 def discover(
-    args: argparse.Namespace, until: Callable[[], bool] = lambda: False
+    args: argparse.Namespace,
+    until: Callable[[], bool] | None = None,
+    *,
+    at_once: bool = False,
 ) -> bool:
     """Let the node get to know the graph.
 
+    A node that misses the answer to its first announcement gets the next one only with
+    the other's periodic announcement, up to 3 s later. So who has not found what it
+    looks for looks longer, unless the user has said how long.
+
     Args:
-        args: with `spin_time` [s], the longest wait.
-        until: ends the wait early; whatever a verb needs to know of the graph.
+        args: with `spin_time` [s], waited in any case, since not all comes at once.
+        until: whether that is known without which the verb can do nothing.
+        at_once: nothing else is needed; end as soon as `until` holds.
 
     Returns:
         Whether `until` holds.
     """
-    return wait_until(until, getattr(args, "spin_time", DISCOVERY_S))
+    spin_time_s = getattr(args, "spin_time", DISCOVERY_S)
+    condition = until or (lambda: False)
+    wait_until(condition if at_once else lambda: False, spin_time_s)
+    is_default = spin_time_s == DISCOVERY_S
+    return wait_until(condition, _PATIENCE_S if until and is_default else 0.0)
+
+
+def has_company(node: Node) -> bool:
+    """Return whether any other node is known."""
+    return len(node.get_node_names()) > 1
 
 
 def wait_until(condition: Callable[[], bool], timeout_s: float) -> bool:
@@ -100,28 +121,48 @@ def wait_until(condition: Callable[[], bool], timeout_s: float) -> bool:
     return holds
 
 
-def spin(node: Node, finished: Future, timeout_s: float | None = None) -> bool:
+def caught(finished: Future, callback: Callable[..., None]) -> Callable[..., None]:
+    """Return a callback whose errors end `spin`, without the executor's own report."""
+
+    def call(*message: Any) -> None:
+        if finished.done():
+            return
+        try:
+            callback(*message)
+        except Exception as error:
+            finished.set_exception(error)
+
+    return call
+
+
+def spin(
+    node: Node,
+    finished: Future,
+    timeout_s: float | None = None,
+    executor: Executor | None = None,
+) -> bool:
     """Serve the node's callbacks until one of them sets the result of `finished`.
 
     Args:
-        node: no guard conditions or Python waitables, and no callbacks that take
-            `(message, info)`: the executor knows none, but costs little.
+        node: any; see `executor`.
         finished: its exception, if one is set, is raised here.
         timeout_s: None waits for ever.
+        executor: by default the events executor, which costs a quarter of the others
+            but knows no guard conditions and no callbacks of `(message, info)`.
 
     Returns:
         Whether it finished in time.
     """
-    executor = EventsExecutor()
-    executor.add_node(node)
+    chosen = EventsExecutor() if executor is None else executor
+    chosen.add_node(node)
     end = None if timeout_s is None else time.monotonic() + timeout_s
     try:
         while not finished.done():
             left = _TURN_S if end is None else min(_TURN_S, end - time.monotonic())
             if left <= 0.0:
                 return False
-            executor.spin_until_future_complete(finished, timeout_sec=left)
+            chosen.spin_until_future_complete(finished, timeout_sec=left)
     finally:
-        executor.remove_node(node)
+        chosen.remove_node(node)
     finished.result()  # raises what a callback has found wrong
     return True

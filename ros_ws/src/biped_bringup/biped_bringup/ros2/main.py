@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
 import os
 import pkgutil
 import signal
@@ -26,7 +27,12 @@ INTERRUPTED = 130
 TERMINATED = 143
 
 COMMANDS = {
+    "doctor": "Check ROS setup and other potential issues",
     "interface": "Show information about ROS interfaces",
+    "node": "Various node related sub-commands",
+    "param": "Various param related sub-commands",
+    "run": "Run a package specific executable",
+    "service": "Various service related sub-commands",
     "topic": "Various topic related sub-commands",
 }
 """Name and help of each command; see the package's docstring."""
@@ -57,6 +63,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def run(args: argparse.Namespace) -> int:
     """Run the chosen verb; return the exit status."""
     signal.signal(signal.SIGTERM, _terminate)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # Whoever reads a pipe sees each message when it comes.
+        sys.stdout.reconfigure(line_buffering=True)
     try:
         status: int = args.run(args)
         sys.stdout.flush()

@@ -31,7 +31,7 @@ def node_environment(domain: int, discovery_range: str) -> dict[str, str]:
         "ROS_AUTOMATIC_DISCOVERY_RANGE": discovery_range,
         "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
-        "FASTDDS_DEFAULT_PROFILES_FILE": str(_PROFILE),
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(_PROFILE),
         "AMENT_PREFIX_PATH": os.environ.get("AMENT_PREFIX_PATH", sys.prefix),
         "PYTHONUNBUFFERED": "1",
         # One thread is enough for arrays of this size, and leaves a core to the others.

@@ -58,7 +58,7 @@ def middleware_area(identifier: str, environment: Mapping[str, str]) -> Area:
     for name in (
         "RMW_IMPLEMENTATION",
         "FASTDDS_BUILTIN_TRANSPORTS",
-        "FASTDDS_DEFAULT_PROFILES_FILE",
+        "FASTRTPS_DEFAULT_PROFILES_FILE",
         "ROS_STATIC_PEERS",
     ):
         if environment.get(name):

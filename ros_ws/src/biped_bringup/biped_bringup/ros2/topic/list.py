@@ -5,9 +5,14 @@ from __future__ import annotations
 import argparse
 
 from rclpy.node import Node
-from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
-from biped_bringup.ros2.graph_node import add_graph_arguments, discover, graph_node
+from biped_bringup.ros2.graph_node import (
+    add_graph_arguments,
+    discover,
+    graph_node,
+    has_company,
+)
+from biped_bringup.ros2.topics import topics_and_types
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,12 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the topics."""
     with graph_node(args) as node:
-        discover(args)
-        topics = [
-            (name, types)
-            for name, types in sorted(node.get_topic_names_and_types())
-            if args.include_hidden_topics or not topic_or_service_is_hidden(name)
-        ]
+        discover(args, until=lambda: has_company(node))
+        topics = topics_and_types(node, include_hidden=args.include_hidden_topics)
         if args.count_topics:
             print(len(topics))
         elif args.verbose:

@@ -1,0 +1,54 @@
+"""What TAB offers: topics by a quick look at the graph, types from the index."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from biped_bringup.ros2 import message_types
+
+# A shell that waits longer for a TAB seems to hang.
+_LOOK_S = 0.3
+
+
+def topic_names(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
+    """Offer the topics that are found at once."""
+    from biped_bringup.ros2.graph_node import graph_node, wait_until
+    from biped_bringup.ros2.topics import topics_and_types
+
+    with graph_node(argparse.Namespace()) as node:
+        wait_until(lambda: False, _LOOK_S)
+        hidden = getattr(parsed_args, "include_hidden_topics", False)
+        return [name for name, _ in topics_and_types(node, include_hidden=hidden)]
+
+
+def message_names(**_: Any) -> list[str]:
+    """Offer all message types."""
+    return message_types.all_interfaces("msg")
+
+
+def interface_names(**_: Any) -> list[str]:
+    """Offer all messages, services and actions."""
+    return [
+        name
+        for kind in message_types.KINDS
+        for name in message_types.all_interfaces(kind)
+    ]
+
+
+def package_names(**_: Any) -> list[str]:
+    """Offer the packages that have interfaces."""
+    return message_types.packages()
+
+
+def message_prototype(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
+    """Offer the default message of the chosen type, to be edited."""
+    from biped_bringup.ros2.message_yaml import to_yaml
+
+    return [to_yaml(message_types.message_class(parsed_args.message_type)())]
+
+
+def completed(action: argparse.Action, completer: Any) -> None:
+    """Have argcomplete ask a function for an argument's values."""
+    # argcomplete looks for this attribute, which argparse does not declare.
+    action.completer = completer  # type: ignore[attr-defined]
