@@ -6,7 +6,12 @@ from collections.abc import Iterable
 from typing import Any
 
 import yaml
-from rcl_interfaces.msg import ParameterDescriptor, ParameterType, ParameterValue
+from rcl_interfaces.msg import (
+    ParameterDescriptor,
+    ParameterType,
+    ParameterValue,
+    SetParametersResult,
+)
 from rclpy.parameter import (
     PARAMETER_SEPARATOR_STRING,
     Parameter,
@@ -60,6 +65,17 @@ def description_text(descriptor: ParameterDescriptor) -> str:
     if descriptor.additional_constraints:
         lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
     return "\n".join(lines)
+
+
+def loaded_text(name: str, result: SetParametersResult) -> str:
+    """Return what became of one parameter of a file."""
+    outcome = "successful" if result.successful else "failed"
+    return f"Set parameter {name} {outcome}{reason_text(result)}"
+
+
+def reason_text(result: SetParametersResult) -> str:
+    """Return the node's reason with a colon in front, if it gave one."""
+    return f": {result.reason}" if result.reason else ""
 
 
 def dump_text(node_name: str, parameters: Iterable[tuple[str, Any]]) -> str:

@@ -11,6 +11,7 @@ from biped_bringup.ros2.parameter_services import (
     add_node_name_arguments,
     parameter_services,
 )
+from biped_bringup.ros2.parameter_text import loaded_text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,10 +39,8 @@ def main(args: argparse.Namespace) -> int:
     with parameter_services(args) as services:
         results = services.set(parameters)
     for parameter, result in zip(parameters, results, strict=True):
-        outcome = "successful" if result.successful else "failed"
-        reason = f": {result.reason}" if result.reason else ""
         print(
-            f"Set parameter {parameter.name} {outcome}{reason}",
+            loaded_text(parameter.name, result),
             file=sys.stdout if result.successful else sys.stderr,
         )
     return 0 if all(result.successful for result in results) else 1

@@ -11,7 +11,7 @@ from biped_bringup.ros2.parameter_services import (
     complete_parameter_names,
     parameter_services,
 )
-from biped_bringup.ros2.parameter_text import typed_parameter
+from biped_bringup.ros2.parameter_text import reason_text, typed_parameter
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,7 +32,7 @@ def main(args: argparse.Namespace) -> int:
     """
     with parameter_services(args) as services:
         (result,) = services.set([typed_parameter(args.parameter_name, args.value)])
-    reason = f": {result.reason}" if result.reason else ""
+    reason = reason_text(result)
     if not result.successful:
         raise VerbError(f"Setting parameter failed{reason}")
     print(f"Set parameter successful{reason}")
