@@ -46,8 +46,9 @@ _LENGTH = struct.Struct("<Q")
 _CRC_SIZE = 4
 _LARGEST_CHUNK = 2**31  # unpacked bytes; a damaged size must not take all memory
 # The beginning of a record that a search may stop at: none is longer than 2**40 bytes.
+# Looked for ahead, since what only seems to be one may overlap one that is.
 _BEGINNING = re.compile(
-    rb"[\x06\x07\x09\x0c].{5}\x00{3}|\x0f\x04\x00{7}", flags=re.DOTALL
+    rb"(?=[\x06\x07\x09\x0c].{5}\x00{3}|\x0f\x04\x00{7})", flags=re.DOTALL
 )
 _READERS: dict[int, Callable[[ReadDataStream], McapRecord]] = {
     Opcode.HEADER: Header.read,
