@@ -1,8 +1,15 @@
-"""The learner on ROS: an observation in, a correction or an episode's result out."""
+"""The learner on ROS: an observation in, a correction or an episode's result out.
+
+What failures do:
+    the checkpoint cannot be written: learning goes on, log and /diagnostics say so, and
+        it is tried again when the next one is due; a service that asked is told.
+    a walk is joined in its middle: it is given up, neither counted nor learned from.
+"""
 
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
 import uuid
@@ -10,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.publisher import Publisher
 from std_srvs.srv import SetBool, Trigger
 
@@ -20,11 +28,11 @@ from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
+from msgs_json.observation_gaps import ObservationGaps
 from msgs_json.refusal import RefusedMessageError
 from msgs_json.ros.cdr import string_message, string_text
 from msgs_json.ros.guarded import GuardedNode
 from msgs_json.ros.messages import correction_template
-from msgs_json.ros.parameters import declared_settings
 from msgs_json.ros.running import run_node
 from msgs_json.wire import decode, encode
 
@@ -45,7 +53,7 @@ class LearnerNode(GuardedNode):
             CheckpointError: the file is there, but cannot be used.
         """
         super().__init__(NAME, **options)
-        settings = declared_settings(self, LearnerNodeSettings)
+        settings = self.settings_from_parameters(LearnerNodeSettings, self._on_settings)
         self._settings = settings
         # Names sort by the time of the start: of two learners, the first stays.
         self.instance = f"learner-{time.time_ns()}-{uuid.uuid4().hex[:8]}"
@@ -64,6 +72,8 @@ class LearnerNode(GuardedNode):
         self.session.frozen = settings.frozen
         self._done = False
         self._save_due = False
+        self._saved_episodes: int | None = None
+        self._gaps = ObservationGaps()
         self._seen = ("", -1)
         self._template = correction_template(self.instance)
         self._corrections: Publisher | None = None
@@ -91,17 +101,39 @@ class LearnerNode(GuardedNode):
         if not self.session.walking:
             self.save()
 
-    def save(self) -> None:
-        """Write the checkpoint, if one is planned."""
-        if self._file is not None and not self._settings.frozen:
-            run_settings = json.loads(self._settings.run_settings)
-            header = {"settings": run_settings, **self.session.header()}
+    def save(self) -> str | None:
+        """Write the checkpoint, if one is kept; return why it could not be written."""
+        if self._file is None or self._settings.frozen:
+            return None
+        run_settings = json.loads(self._settings.run_settings)
+        header = {"settings": run_settings, **self.session.header()}
+        try:
             write_checkpoint(self._file, header, self.session.arrays())
+        except OSError as error:
+            text = f"{self._file}: cannot be written: {error.strerror}"
+            self.get_logger().error(text)
+            self.remark(DiagnosticStatus.ERROR, "checkpoint", text)
+            return text
+        self._saved_episodes = self.session.episodes
+        return None
+
+    def figures(self) -> dict[str, str]:
+        """Return how much has been learned, and how much of it is saved."""
+        saved = self._saved_episodes
+        return {
+            "episodes": str(self.session.episodes),
+            "episodes saved": "none" if saved is None else str(saved),
+        }
+
+    def _on_settings(self, settings: LearnerNodeSettings) -> None:
+        """Take over what may change while the learner learns."""
+        self._settings = settings
 
     def _on_observation(self, message: bytes) -> None:
         if self._done:
             return  # the walk that the robot offers now is nobody's
         observation = decode(Observation, string_text(message))
+        self.dropped(topics.OBSERVATION, self._gaps.before(observation))
         simulation, clock_ticks = self._seen
         if observation.simulation == simulation and (
             observation.clock_ticks <= clock_ticks
@@ -122,7 +154,8 @@ class LearnerNode(GuardedNode):
     def _finish(self, result: EpisodeResult) -> None:
         every = self._settings.checkpoint_every_episodes
         session = self.session
-        walked = session.tally.evaluations if session.frozen else session.episodes
+        frozen = self._settings.frozen
+        walked = session.tally.evaluations if frozen else session.episodes
         self._done = 0 < self._settings.max_episodes <= walked and not session.trial_due
         if self._save_due or self._done or session.episodes % every == 0:
             self.save()
@@ -150,17 +183,27 @@ class LearnerNode(GuardedNode):
     def _on_save(
         self, _: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        if self._file is None:
-            response.message = "no checkpoint file was given at the start"
-            return response
-        if self.session.walking:
+        problem = self._saving_problem()
+        if problem is None and self.session.walking:
             self._save_due = True
             response.message = f"will be saved to {self._file} at the walk's end"
-        else:
-            self.save()
+        elif problem is None:
+            problem = self.save()
             response.message = f"saved to {self._file}"
-        response.success = True
+        if problem is not None:
+            response.message = problem
+        response.success = problem is None
         return response
+
+    def _saving_problem(self) -> str | None:
+        """Return why nothing can be saved, as far as that can be told beforehand."""
+        if self._file is None:
+            return "no checkpoint file was given at the start"
+        if self._settings.frozen:
+            return "this learner was started frozen: there is nothing new to save"
+        if not os.access(self._file.parent, os.W_OK | os.X_OK):
+            return f"{self._file}: its folder is not there, or cannot be written to"
+        return None
 
     def _on_freeze(
         self, request: SetBool.Request, response: SetBool.Response
@@ -174,7 +217,7 @@ class LearnerNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(LearnerNode)
+    return run_node(LearnerNode, wrong_input=(CheckpointError,))
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ class LearnerNodeSettings:
     )
     checkpoint_file: str = setting("", "", "goes on from here, and is kept here")
     checkpoint_every_episodes: int = setting(
-        10, "episodes", "learning episodes between saves", lower=1
+        10, "episodes", "learning episodes between saves", lower=1, live=True
     )
     run_settings: str = setting("{}", "", "settings of the whole run, kept with it")
 

@@ -78,6 +78,18 @@ LEARNER_STATUS = Topic(
     latched=True,
     meaning="LearnerStatus, JSON",
 )
+MARKERS = Topic(
+    "/biped/markers",
+    "visualization_msgs/msg/MarkerArray",
+    depth=100,
+    meaning="support polygon, ZMPs, limit, waist paths: to look at, world frame [m]",
+)
+TORSO_POSE = Topic(
+    "/biped/torso_pose",
+    "geometry_msgs/msg/TransformStamped",
+    depth=100,
+    meaning="where the torso is in the world frame [m]: places the robot in a view",
+)
 ROBOT_DESCRIPTION = Topic(
     "/robot_description",
     "std_msgs/msg/String",

@@ -19,15 +19,16 @@ from msgs_json.observation import Observation
 from msgs_json.refusal import RefusedMessageError
 from msgs_json.ros.cdr import string_message, string_text
 from msgs_json.ros.guarded import GuardedNode
-from msgs_json.ros.messages import segment_of, segment_template
-from msgs_json.ros.parameters import declared_settings
+from msgs_json.ros.messages import segment_of, segment_template, segment_values
 from msgs_json.ros.running import run_node
 from msgs_json.seeds import robot_stream
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import MalformedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
-from sim_node.pilot import Pilot
-from sim_node.realtime import RealtimeLoop
+from sim_node.control_tick import ControlTick
+from sim_node.markers import MarkerPublisher
+from sim_node.pilot import Pilot, check_stance
+from sim_node.realtime import Punctuality, RealtimeLoop
 from sim_node.settings import SimNodeSettings
 from sim_node.tick_publisher import TickPublisher
 
@@ -47,15 +48,24 @@ class SimNode(GuardedNode):
             options: of `rclpy.node.Node`, such as `parameter_overrides`.
         """
         super().__init__(NAME, **options)
-        settings = declared_settings(self, SimNodeSettings)
+        settings = self.settings_from_parameters(SimNodeSettings, self._on_settings)
         self._settings = settings
         self._rng = np.random.default_rng(robot_stream(settings.seed))
+        self._stance: WaistSegment | None = None
         self._pilot: Pilot | None = None
         self._loop: RealtimeLoop | None = None
         self._paused = False
         self._held: bytes | None = None
         self._heard = time.monotonic()
+        self._punctuality = Punctuality()
+        self._observed_ns = time.monotonic_ns()
         self._ticks = TickPublisher(self, settings.publish_every_ticks)
+        self._markers = MarkerPublisher(
+            self,
+            settings.sim.limits.zmp_error_m,
+            settings.segment_rows,
+            settings.markers_every_ticks,
+        )
         self._observations = self.publisher(topics.OBSERVATION)
         description = self.publisher(topics.ROBOT_DESCRIPTION)
         description.publish(string_message(urdf_path().read_text()))
@@ -76,8 +86,16 @@ class SimNode(GuardedNode):
             self._pilot.biped.close()
 
     def figures(self) -> dict[str, str]:
-        """Return punctuality, in real time."""
-        return {} if self._loop is None else self._loop.punctuality.figures()
+        """Return rate, lateness and missed deadlines."""
+        return self._punctuality.figures()
+
+    def _on_settings(self, settings: SimNodeSettings) -> None:
+        """Take over what may change while the robot walks."""
+        self._settings = settings
+        self._ticks.every_ticks = settings.publish_every_ticks
+        self._markers.every_ticks = settings.markers_every_ticks
+        if self._loop is not None:
+            self._loop.set_factor(settings.realtime_factor)
 
     # -- messages ------------------------------------------------------------------
 
@@ -85,20 +103,41 @@ class SimNode(GuardedNode):
         read = self._stance_template.read(message)
         if read is None:
             raise MalformedMessageError("stance: not a waist reference of one row")
-        if self._pilot is None:
-            biped = SimulatedBiped(
-                self._settings.sim,
-                segment_of(read[0]),
-                self._rng,
-                self._ticks.publish,
-                name=uuid.uuid4().hex[:8],
+        stance = segment_of(read[0])
+        check_stance(stance)
+        if self._stance is None:
+            self._stance = stance
+            self._stand(stance)
+        elif not np.array_equal(segment_values(stance), segment_values(self._stance)):
+            raise RefusedMessageError(
+                "another stance than walks begin in; start sim_node anew to change it"
             )
-            self._pilot = Pilot(biped)
-            if self._settings.pace == "realtime":
-                self._loop = RealtimeLoop(
-                    self._pilot, self._settings.realtime_factor, self._publish
-                )
-                self._loop.start()
+
+    def _stand(self, stance: WaistSegment) -> None:
+        """Build the world around the robot in its stance."""
+        biped = SimulatedBiped(
+            self._settings.sim,
+            stance,
+            self._rng,
+            self._on_tick,
+            name=uuid.uuid4().hex[:8],
+        )
+        self._pilot = Pilot(biped)
+        if self._settings.pace == "realtime":
+            self._loop = RealtimeLoop(
+                self._pilot,
+                self._settings.realtime_factor,
+                self._publish,
+                self._punctuality,
+            )
+            self._loop.start()
+
+    def _on_tick(self, tick: ControlTick) -> None:
+        """Publish a control tick, in the thread that walks."""
+        self._punctuality.ticks += 1
+        self._ticks.publish(tick)
+        if self._pilot is not None and self._pilot.segment is not None:
+            self._markers.publish(tick, self._pilot.segment, self._pilot.biped.world)
 
     def _on_segment(self, message: bytes) -> None:
         if self._paused and self._loop is None:
@@ -114,7 +153,9 @@ class SimNode(GuardedNode):
         values, clock_ticks = read
         segment = segment_of(values)
         if self._loop is None:
+            latency_ns = time.monotonic_ns() - self._observed_ns
             self._publish(self._pilot.execute(clock_ticks, segment))
+            self._punctuality.segment(latency_ns)
         else:
             self._loop.request(lambda: self._follow(clock_ticks, segment))
 
@@ -145,7 +186,7 @@ class SimNode(GuardedNode):
 
     def _end(self, cause: EndCause) -> bool:
         """End the walk from outside; return whether one was under way."""
-        if self._pilot is None or self._pilot.biped.end_cause is not None:
+        if self._pilot is None or not self._pilot.walking:
             return False
         if self._loop is not None:
             loop = self._loop
@@ -203,6 +244,7 @@ class SimNode(GuardedNode):
     def _publish(self, observation: Observation) -> None:
         if self._loop is None:
             self._heard = time.monotonic()
+            self._observed_ns = time.monotonic_ns()
         self._observations.publish(string_message(encode(observation)))
 
     # -- services ------------------------------------------------------------------
@@ -215,9 +257,10 @@ class SimNode(GuardedNode):
         if self._loop is not None:
             loop, paused = self._loop, request.data
             loop.request(lambda: loop.pause(paused))
-        held, self._held = self._held, None
-        if not self._paused and held is not None:
-            self._on_segment(held)
+        elif not self._paused and self._held is not None:
+            held, self._held = self._held, None
+            self._observed_ns = time.monotonic_ns()
+            self.guarded(topics.WAIST_REFERENCE, self._on_segment, held)
         response.success = True
         response.message = "paused" if request.data else "walking"
         return response
@@ -226,6 +269,7 @@ class SimNode(GuardedNode):
         self, _: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
         response.success = self._end(EndCause.RESET)
+        self._held = None  # it was for the walk that has ended
         response.message = "walk ended" if response.success else "no walk to end"
         return response
 

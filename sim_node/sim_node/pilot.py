@@ -5,12 +5,26 @@ Pure bookkeeping around the robot; the node brings the messages and the time.
 
 from __future__ import annotations
 
+from biped_description.errors import DescriptionError
+from biped_description.kinematics import leg_joint_positions
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.refusal import RefusedMessageError
 from msgs_json.segment import WaistSegment
 from sim_node.biped import SimulatedBiped
+
+
+def check_stance(stance: WaistSegment) -> None:
+    """Refuse a pose in which the robot cannot stand.
+
+    Raises:
+        RefusedMessageError: the legs do not reach it.
+    """
+    try:
+        leg_joint_positions(stance.waist, stance.left_foot, stance.right_foot)
+    except DescriptionError as error:
+        raise RefusedMessageError(f"stance: {error}") from None
 
 
 class Pilot:
@@ -22,6 +36,13 @@ class Pilot:
         self.walks = 0
         self.observation: Observation | None = None
         """The last one given out."""
+        self.segment: WaistSegment | None = None
+        """The one that is followed."""
+
+    @property
+    def walking(self) -> bool:
+        """Whether a walk has begun and not ended."""
+        return self.walks > 0 and self.biped.end_cause is None
 
     def begin(self) -> Observation:
         """Begin the next walk."""
@@ -39,7 +60,8 @@ class Pilot:
         Raises:
             RefusedMessageError: the segment is not for now.
         """
-        self._check(clock_ticks, segment)
+        self._check(clock_ticks)
+        self.segment = segment
         try:
             self.observation = self.biped.execute(segment)
         except ValueError as error:
@@ -52,11 +74,12 @@ class Pilot:
         Raises:
             RefusedMessageError: the segment is not for now.
         """
-        self._check(clock_ticks, segment)
+        self._check(clock_ticks)
         try:
             self.biped.follow(segment)
         except ValueError as error:
             raise RefusedMessageError(str(error)) from None
+        self.segment = segment
 
     def observe(self) -> Observation:
         """Sum up what was walked since the last observation (real time)."""
@@ -81,7 +104,7 @@ class Pilot:
                 f"result of walk {result.episode}, the present one is {self.walks}"
             )
 
-    def _check(self, clock_ticks: int, segment: WaistSegment) -> None:
+    def _check(self, clock_ticks: int) -> None:
         expected = None if self.observation is None else self.observation.clock_ticks
         if clock_ticks != expected:
             raise RefusedMessageError(

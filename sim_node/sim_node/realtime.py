@@ -17,25 +17,31 @@ import numpy as np
 
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
-from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK
+from msgs_json.timing import (
+    CONTROL_PERIOD_S,
+    CONTROL_PERIOD_US,
+    TICKS_PER_LEARNING_TICK,
+)
 from sim_node.pilot import Pilot
 
 _REMEMBERED_TICKS = 10_000
 
 
 class Punctuality:
-    """Lateness of control ticks, latency of segments, and deadlines missed."""
+    """Rate and lateness of control ticks, latency of segments, deadlines missed."""
 
     def __init__(self) -> None:
         """Start with nothing measured."""
         self.missed_deadlines = 0
         self.ticks = 0
+        """Control ticks walked."""
+        self._rated_ticks = 0
+        self._rated_ns = time.monotonic_ns()
         self._lateness_ns: deque[int] = deque(maxlen=_REMEMBERED_TICKS)
         self._latency_ns: deque[int] = deque(maxlen=_REMEMBERED_TICKS)
 
-    def tick(self, lateness_ns: int) -> None:
-        """Take note of a control tick."""
-        self.ticks += 1
+    def late(self, lateness_ns: int) -> None:
+        """Take note of how late a control tick began; only real time has deadlines."""
         self._lateness_ns.append(lateness_ns)
 
     def segment(self, latency_ns: int) -> None:
@@ -43,9 +49,15 @@ class Punctuality:
         self._latency_ns.append(latency_ns)
 
     def figures(self) -> dict[str, str]:
-        """Return percentiles of the recent past, for diagnostics."""
+        """Return the rate since the last call, and percentiles of the recent past."""
+        now_ns = time.monotonic_ns()
+        elapsed_s = (now_ns - self._rated_ns) * 1e-9
+        rate_hz = (self.ticks - self._rated_ticks) / elapsed_s
+        self._rated_ticks, self._rated_ns = self.ticks, now_ns
         figures = {
             "control ticks": str(self.ticks),
+            "control ticks [Hz]": f"{rate_hz:.1f}",
+            "simulated per real time": f"{rate_hz * CONTROL_PERIOD_S:.3f}",
             "missed 20 ms deadlines": str(self.missed_deadlines),
         }
         for name, values in (
@@ -64,7 +76,11 @@ class RealtimeLoop:
     """Drives a pilot at 500 Hz; all that touches the robot happens in its thread."""
 
     def __init__(
-        self, pilot: Pilot, factor: float, publish: Callable[[Observation], None]
+        self,
+        pilot: Pilot,
+        factor: float,
+        publish: Callable[[Observation], None],
+        punctuality: Punctuality,
     ) -> None:
         """Prepare the thread.
 
@@ -72,17 +88,22 @@ class RealtimeLoop:
             pilot: of the robot.
             factor: simulated seconds per second.
             publish: gives out an observation.
+            punctuality: takes note of the deadlines.
         """
-        self.punctuality = Punctuality()
+        self._punctuality = punctuality
         self._pilot = pilot
         self._publish = publish
-        self._period_ns = round(CONTROL_PERIOD_US * 1000 / factor)
+        self.set_factor(factor)
         self._requests: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._stopping = threading.Event()
         self._paused = False
         self._observed_ns = 0
         self._answered = False
         self._thread = threading.Thread(target=self._run, name="realtime", daemon=True)
+
+    def set_factor(self, factor: float) -> None:
+        """Walk so many simulated seconds per second from the next control tick on."""
+        self._period_ns = round(CONTROL_PERIOD_US * 1000 / factor)
 
     def start(self) -> None:
         """Start the thread; the robot stands until the first walk is begun."""
@@ -107,7 +128,7 @@ class RealtimeLoop:
     def segment_arrived(self) -> None:
         """Take note that the last observation has been answered."""
         self._answered = True
-        self.punctuality.segment(time.monotonic_ns() - self._observed_ns)
+        self._punctuality.segment(time.monotonic_ns() - self._observed_ns)
 
     def end(self, cause: EndCause) -> None:
         """End the walk from outside."""
@@ -131,7 +152,7 @@ class RealtimeLoop:
             if self._paused or self._pilot.observation is None:
                 continue
             if self._pilot.biped.end_cause is None:
-                self.punctuality.tick(max(0, lateness_ns))
+                self._punctuality.late(max(0, lateness_ns))
                 self._tick()
 
     def _serve_requests(self) -> None:
@@ -147,7 +168,7 @@ class RealtimeLoop:
         if biped.ticks_ahead < 1:
             # Before the first segment of a walk the robot just stands and waits.
             if biped.control_tick > 0:
-                self.punctuality.missed_deadlines += 1
+                self._punctuality.missed_deadlines += 1
                 self.end(EndCause.PEER_SILENT)
             return
         biped.advance()
@@ -156,7 +177,7 @@ class RealtimeLoop:
         due = biped.at_segment_end or biped.control_tick % TICKS_PER_LEARNING_TICK == 0
         if over or due:
             if not self._answered:
-                self.punctuality.missed_deadlines += 1
+                self._punctuality.missed_deadlines += 1
             self._give_out(self._pilot.observe())
 
     def _give_out(self, observation: Observation) -> None:

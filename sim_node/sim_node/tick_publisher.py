@@ -26,7 +26,7 @@ class TickPublisher:
             node: that publishes.
             every_ticks: 1 publishes all control ticks, 10 every tenth.
         """
-        self._every_ticks = every_ticks
+        self.every_ticks = every_ticks
         self._clock = node.publisher(topics.CLOCK)
         self._states = node.publisher(topics.JOINT_STATES)
         self._references = node.publisher(topics.JOINT_REFERENCES)
@@ -55,7 +55,7 @@ class TickPublisher:
     def publish(self, tick: ControlTick) -> None:
         """Publish a tick, if it is its turn."""
         at = tick.clock_ticks
-        if at % self._every_ticks:
+        if at % self.every_ticks:
             return
         self._clock.publish(self._clock_template.fill((), at))
         self._states.publish(
@@ -70,7 +70,8 @@ class TickPublisher:
         )
         self._zmp.publish(self._point_template.fill(tick.contact[:2], at))
         self._zmp_reference.publish(self._point_template.fill(tick.zmp_reference, at))
-        if tick.phase != self._last_phase:
-            self._last_phase = tick.phase
-            self._phase_message = string_message(encode(tick.phase))
+        phase = tick.phase
+        if phase != self._last_phase:
+            self._last_phase = phase
+            self._phase_message = string_message(encode(phase))
         self._phase.publish(self._phase_message)

@@ -7,6 +7,7 @@ from typing import Any
 
 from msgs_json import topics
 from msgs_json.observation import Observation
+from msgs_json.observation_gaps import ObservationGaps
 from msgs_json.ros.cdr import string_text
 from msgs_json.ros.guarded import GuardedNode
 from msgs_json.ros.messages import (
@@ -14,10 +15,10 @@ from msgs_json.ros.messages import (
     segment_template,
     segment_values,
 )
-from msgs_json.ros.parameters import declared_settings
 from msgs_json.ros.running import run_node
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import decode
+from trajectory_node.errors import InfeasibleGaitError
 from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
@@ -38,11 +39,12 @@ class TrajectoryNode(GuardedNode):
             InfeasibleGaitError: the robot cannot walk this gait.
         """
         super().__init__(NAME, **options)
-        settings = declared_settings(self, TrajectorySettings)
+        settings = self.settings_from_parameters(TrajectorySettings)
         reference = WaistReference(
             settings.gait, settings.correction, settings.look_ahead_ticks
         )
         self._maker = SegmentMaker(reference, settings.correction_limit_m)
+        self._gaps = ObservationGaps()
         stance = reference.stance()
         self._stance_template = segment_template(rows=1)
         self._template = segment_template(reference.rows)
@@ -54,6 +56,7 @@ class TrajectoryNode(GuardedNode):
 
     def _on_observation(self, message: bytes) -> None:
         observation = decode(Observation, string_text(message))
+        self.dropped(topics.OBSERVATION, self._gaps.before(observation))
         self._publish(self._maker.observe(observation), observation.clock_ticks)
 
     def _on_correction(self, message: bytes) -> None:
@@ -69,7 +72,7 @@ class TrajectoryNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(TrajectoryNode)
+    return run_node(TrajectoryNode, wrong_input=(InfeasibleGaitError,))
 
 
 if __name__ == "__main__":

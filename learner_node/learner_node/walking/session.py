@@ -16,10 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learner_node.memory_hash import Arrays
+from learner_node.walking.cost import CostIntegral
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.frozen import FrozenWalk, greedy_walk
 from learner_node.walking.learner import WalkLearner
 from learner_node.walking.settings import LearnerSettings
+from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
@@ -71,6 +73,8 @@ class LearningSession:
         self.walking = False
         """Whether a walk is under way; checkpoints are taken between walks."""
         self._walk: WalkLearner | FrozenWalk = self.learner
+        self._begun = ("", 0)
+        """Simulation and number of the walk that was last begun."""
 
     @property
     def episodes(self) -> int:
@@ -93,12 +97,20 @@ class LearningSession:
         return self._trial_due
 
     def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
-        """Return the correction [m] for the coming learning tick, or the result."""
+        """Return the correction [m] for the coming learning tick, or the result.
+
+        A walk whose beginning was not seen is given up: its result is not counted, and
+        nothing is learned from it.
+        """
+        walk = (observation.simulation, observation.episode)
         if observation.control_tick == 0 and observation.end_cause is None:
             self._walk = (
                 self.greedy() if self.frozen or self._trial_due else self.learner
             )
+            self._begun = walk
             self.walking = True
+        elif not self.walking or walk != self._begun:
+            return self._unseen(observation)
         answer = self._walk.respond(observation)
         if isinstance(answer, EpisodeResult):
             self.walking = False
@@ -111,6 +123,20 @@ class LearningSession:
                 )
             self._count(answer)
         return answer
+
+    def _unseen(self, observation: Observation) -> EpisodeResult:
+        """Return the result of a walk that was joined in its middle, if at all."""
+        self.walking = False
+        schedule, cost = self.learner.schedule, CostIntegral(self.settings.cost)
+        cost.add(observation)
+        result = cost.result(
+            observation,
+            observation.end_cause or EndCause.PEER_SILENT,
+            schedule.target_ticks,
+            subtask=schedule.subtask,
+            schedule_complete=schedule.complete,
+        )
+        return msgspec.structs.replace(result, cost=None)
 
     def greedy(self) -> FrozenWalk:
         """Return a frozen greedy walk of the present memory."""

@@ -37,10 +37,22 @@ class MessageTemplate:
         self._bytes = bytearray(b"\0\1\0\0")
         self._values: list[int] = []
         self._loose: list[int] = [2, 3]
-        self._stamped = stamped
+        self._stamps: list[int] = []
         if stamped:
-            self._loose += range(_ENCAPSULATION, _ENCAPSULATION + 8)
-            self.integer(0).integer(0)
+            self.stamp()
+
+    def stamp(self) -> MessageTemplate:
+        """Append a time, that of the clock ticks given to `fill`."""
+        self._align(4)
+        self._stamps.append(len(self._bytes))
+        self._loose += range(len(self._bytes), len(self._bytes) + _STAMP.size)
+        self._bytes += bytes(_STAMP.size)
+        return self
+
+    def octet(self, number: int) -> MessageTemplate:
+        """Append a uint8 or a bool."""
+        self._bytes.append(number)
+        return self
 
     def integer(self, number: int) -> MessageTemplate:
         """Append a (u)int32, the length of a sequence among them."""
@@ -53,6 +65,12 @@ class MessageTemplate:
         octets = text.encode() + b"\0"
         self.integer(len(octets))
         self._bytes += octets
+        return self
+
+    def single(self, number: float) -> MessageTemplate:
+        """Append a float32 that does not change."""
+        self._align(4)
+        self._bytes += struct.pack("<f", number)
         return self
 
     def constant(self, number: float) -> MessageTemplate:
@@ -93,12 +111,15 @@ class MessageTemplate:
             clock_ticks: control ticks of the simulation's clock.
         """
         self._view[self._index] = np.ravel(values)
-        if self._stamped:
-            write_stamp(self._bytes, _ENCAPSULATION, clock_ticks)
+        for place in self._stamps:
+            write_stamp(self._bytes, place, clock_ticks)
         return bytes(self._bytes)
 
     def read(self, message: bytes) -> tuple[NDArray[np.float64], int] | None:
-        """Return values and clock ticks of a message, None if it is of another form."""
+        """Return values and clock ticks of a message, None if it is of another form.
+
+        Of several stamps, the first counts.
+        """
         # The middleware may pad to four bytes and says so in the options.
         if not 0 <= len(message) - len(self._bytes) < 4:
             return None
@@ -106,7 +127,7 @@ class MessageTemplate:
         if not np.array_equal(octets[self._fixed], self._pattern):
             return None
         view = self._numbers(message)
-        ticks = read_stamp(message, _ENCAPSULATION) if self._stamped else 0
+        ticks = read_stamp(message, self._stamps[0]) if self._stamps else 0
         return (view[self._index], ticks) if ticks is not None else None
 
     @staticmethod

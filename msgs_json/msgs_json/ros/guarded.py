@@ -2,26 +2,32 @@
 
 What a handler cannot understand or must not act on never reaches robot or memory: the
 handler raises, the message is counted under its topic, and the first of its kind and
-then one a second is logged.
+then one a second is logged. A change of parameters that is refused says which and why.
 """
 
 from __future__ import annotations
 
 import importlib
+import time
 from collections import Counter
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 
 from msgs_json import topics
 from msgs_json.refusal import RefusedMessageError
+from msgs_json.ros.parameters import changed_settings, declared_settings
 from msgs_json.ros.qos import qos_profile
+from msgs_json.settings import SettingsError
 from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError
 
+Settings = TypeVar("Settings")
 _DIAGNOSTICS_PERIOD_S = 1.0
 
 
@@ -37,16 +43,62 @@ class GuardedNode(Node):  # type: ignore[misc]
         """
         super().__init__(name, **options)
         self.counts: Counter[str] = Counter()
-        """Messages received, refused and malformed, by topic."""
+        """Messages received, dropped, refused and malformed, by topic."""
         self.failure: str | None = None
         """Set by a node that cannot go on: why."""
+        self._changed: Callable[[Any], None] | None = None
+        self._present_settings: Any = None
+        self._ros_parameters: frozenset[str] = frozenset()
+        """Those that every node has, such as use_sim_time."""
         self._worst = DiagnosticStatus.OK
         self._remarks: dict[str, str] = {}
+        self._rated: Counter[str] = Counter()
+        self._rated_at = time.monotonic()
         self._diagnostics = self.publisher(topics.DIAGNOSTICS)
         self.create_timer(_DIAGNOSTICS_PERIOD_S, self._publish_diagnostics)
 
     def close(self) -> None:
         """Let go of what is not ROS's; nodes override it."""
+
+    # -- parameters ----------------------------------------------------------------
+
+    def settings_from_parameters(
+        self, cls: type[Settings], changed: Callable[[Settings], None] | None = None
+    ) -> Settings:
+        """Declare the node's settings as its parameters; return them.
+
+        Args:
+            cls: settings dataclass.
+            changed: gets the settings anew whenever a live one was changed.
+
+        Raises:
+            SettingsError: a parameter that was given cannot be used.
+        """
+        self._ros_parameters = frozenset(self.list_parameters([], 0).names)
+        self._changed = changed
+        settings = declared_settings(self, cls)
+        self._present_settings = settings
+        return settings
+
+    def set_parameters_atomically(
+        self, parameter_list: list[Parameter]
+    ) -> SetParametersResult:
+        """Change live settings, all of them or, where one cannot be changed, none."""
+        if self._present_settings is None:
+            return super().set_parameters_atomically(parameter_list)
+        ours = [p for p in parameter_list if p.name not in self._ros_parameters]
+        try:
+            settings = changed_settings(self._present_settings, ours)
+        except SettingsError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        result = super().set_parameters_atomically(parameter_list)
+        if result.successful and ours:
+            self._present_settings = settings
+            if self._changed is not None:
+                self._changed(settings)
+        return result
+
+    # -- messages ------------------------------------------------------------------
 
     def publisher(self, topic: Topic) -> Publisher:
         """Return a publisher of a topic of the graph."""
@@ -57,18 +109,24 @@ class GuardedNode(Node):  # type: ignore[misc]
     def listen(self, topic: Topic, handle: Callable[[bytes], None]) -> None:
         """Hand every message of a topic, as serialized bytes, to a guarded handler."""
 
-        def guarded(message: bytes) -> None:
+        def received(message: bytes) -> None:
             self.counts[f"{topic.name} received"] += 1
-            try:
-                handle(bytes(message))
-            except RefusedMessageError as error:
-                self.refuse(topic, "refused", error)
-            except MalformedMessageError as error:
-                self.refuse(topic, "malformed", error)
+            self.guarded(topic, handle, bytes(message))
 
         self.create_subscription(
-            message_type(topic), topic.name, guarded, qos_profile(topic), raw=True
+            message_type(topic), topic.name, received, qos_profile(topic), raw=True
         )
+
+    def guarded(
+        self, topic: Topic, handle: Callable[[bytes], None], message: bytes
+    ) -> None:
+        """Handle a message, and count it where the handler will not have it."""
+        try:
+            handle(message)
+        except RefusedMessageError as error:
+            self.refuse(topic, "refused", error)
+        except MalformedMessageError as error:
+            self.refuse(topic, "malformed", error)
 
     def refuse(self, topic: Topic, kind: str, error: Exception) -> None:
         """Count a message that was not acted on."""
@@ -77,6 +135,16 @@ class GuardedNode(Node):  # type: ignore[misc]
         self.get_logger().warning(
             f"{topic.name}: {kind}: {error}", throttle_duration_sec=1.0
         )
+
+    def dropped(self, topic: Topic, messages: int) -> None:
+        """Count messages that were sent but never came."""
+        if messages > 0:
+            self.counts[f"{topic.name} dropped"] += messages
+            text = f"{topic.name}: {messages} messages never came"
+            self.remark(DiagnosticStatus.WARN, f"{topic.name} dropped", text)
+            self.get_logger().warning(text, throttle_duration_sec=1.0)
+
+    # -- diagnostics ---------------------------------------------------------------
 
     def remark(self, level: bytes, key: str, text: str) -> None:
         """Put a remark into the next diagnostics, with its severity."""
@@ -87,6 +155,18 @@ class GuardedNode(Node):  # type: ignore[misc]
         """Return what the node adds to its diagnostics; nodes override it."""
         return {}
 
+    def _rates(self) -> dict[str, str]:
+        """Return messages received per second since the last diagnostics, by topic."""
+        now = time.monotonic()
+        elapsed_s, self._rated_at = now - self._rated_at, now
+        new = self.counts - self._rated
+        self._rated = self.counts.copy()
+        return {
+            f"{key} [Hz]": f"{new[key] / elapsed_s:.1f}"
+            for key in self.counts
+            if key.endswith("received")
+        }
+
     def _publish_diagnostics(self) -> None:
         status = DiagnosticStatus(
             level=self._worst,
@@ -94,7 +174,8 @@ class GuardedNode(Node):  # type: ignore[misc]
             hardware_id="simulation",
             message="; ".join(self._remarks.values()) or "running",
         )
-        figures = {**{k: str(n) for k, n in self.counts.items()}, **self.figures()}
+        counts = {key: str(number) for key, number in self.counts.items()}
+        figures = {**counts, **self._rates(), **self.figures()}
         status.values = [KeyValue(key=k, value=v) for k, v in figures.items()]
         array = DiagnosticArray(status=[status])
         array.header.stamp = self.get_clock().now().to_msg()

@@ -21,15 +21,27 @@ REFUSED = 4
 _TURN_S = 0.2
 
 
-def run_node(make: Callable[[], GuardedNode]) -> int:
+def run_node(
+    make: Callable[[], GuardedNode], wrong_input: tuple[type[Exception], ...] = ()
+) -> int:
     """Make a node, spin it until SIGINT or SIGTERM, and close it.
 
+    Args:
+        make: makes the node.
+        wrong_input: errors of the node's making, besides wrong parameters, that are
+            the user's and not the program's.
+
     Returns:
-        The exit status: 0 after an orderly end, 2 for wrong parameters, 4 when the node
-        gave up.
+        The exit status: 0 after an orderly end, 2 for wrong input, 4 when the node gave
+        up.
     """
     # Signals end the loop below, not the middle of a callback.
-    rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+    try:
+        rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        # A parameter file that is not there or is no YAML, or a word out of place.
+        print(f"wrong arguments: {' '.join(str(error).split())}", file=sys.stderr)
+        return WRONG_INPUT
     stops: list[int] = []
 
     def stop(number: int, _: Any) -> None:
@@ -51,6 +63,9 @@ def run_node(make: Callable[[], GuardedNode]) -> int:
         return 0
     except SettingsError as error:
         print(f"wrong parameter: {error}", file=sys.stderr)
+        return WRONG_INPUT
+    except wrong_input as error:
+        print(f"cannot start: {error}", file=sys.stderr)
         return WRONG_INPUT
     except ExternalShutdownException:
         return 0
