@@ -104,6 +104,14 @@ class Supervisor:
             if stopped():
                 return
             self._start(child, stopped)
+        self.watch(done, stopped)
+
+    def watch(self, done: Callable[[], bool], stopped: Callable[[], bool]) -> None:
+        """Keep the nodes, once started, running until `done` or `stopped`.
+
+        Raises:
+            NodeFailureError: a node could not be kept running.
+        """
         while not (done() or stopped()):
             self.graph.spin(_TURN_S)
             for child in self.children.values():
