@@ -23,6 +23,7 @@ _SEQUENCES = (list, tuple, array.array, np.ndarray)
 _CUT = "..."
 # libyaml takes a C integer; lines of text are not folded.
 _ENDLESS = 2**31 - 1
+_LINE_ENDS = "\x85\u2028\u2029"
 
 
 @dataclass(frozen=True)
@@ -55,8 +56,13 @@ def to_yaml(message: Any, shown: Shown = EVERYTHING, flow_style: bool = False) -
     """Return a message as YAML, with a line's end."""
     plain = to_plain(message, shown)
     text = _dump(plain, yaml.CSafeDumper, flow_style)
-    # libyaml is twenty times as quick, but escapes what is beyond 16 bits.
-    return _dump(plain, yaml.SafeDumper, flow_style) if "\\" in text else text
+    if "\\" in text:
+        # libyaml is twenty times as quick, but escapes what is beyond 16 bits.
+        text = _dump(plain, yaml.SafeDumper, flow_style)
+    if any(line_end in text for line_end in _LINE_ENDS):
+        # Written as they are, they would be read as the ends of lines.
+        text = _dump(plain, yaml.CSafeDumper, flow_style, allow_unicode=False)
+    return text
 
 
 def to_csv(message: Any, shown: Shown = EVERYTHING) -> str:
@@ -104,12 +110,14 @@ def type_name(kind: Any) -> str:
     return "unknown"
 
 
-def _dump(plain: dict[str, Any], dumper: Any, flow_style: bool) -> str:
+def _dump(
+    plain: dict[str, Any], dumper: Any, flow_style: bool, allow_unicode: bool = True
+) -> str:
     text: str = yaml.dump(
         plain,
         Dumper=dumper,
         sort_keys=False,
-        allow_unicode=True,
+        allow_unicode=allow_unicode,
         width=_ENDLESS,
         default_flow_style=flow_style,
     )

@@ -36,6 +36,13 @@ def spread(durations_ns: Iterable[int]) -> Spread:
     return Spread(mean, min(values), max(values), math.sqrt(variance), len(values))
 
 
+def rate_report(intervals_ns: Iterable[int]) -> str:
+    """Return what `hz` prints for at least one interval between messages."""
+    intervals = spread(intervals_ns)
+    rate = _NS_PER_S / intervals.mean if intervals.mean > 0.0 else 0.0
+    return f"average rate: {rate:.3f}\n{intervals.line()}"
+
+
 class RateWindow:
     """Rate of arrival, over the last intervals, once a second."""
 
@@ -67,9 +74,7 @@ class RateWindow:
         if now_ns < self._reported_ns + _NS_PER_S:
             return None
         self._reported_ns = now_ns
-        intervals = spread(self._intervals_ns)
-        rate = _NS_PER_S / intervals.mean if intervals.mean > 0.0 else 0.0
-        return f"average rate: {rate:.3f}\n{intervals.line()}"
+        return rate_report(self._intervals_ns)
 
     def _reset(self) -> str | None:
         had_some = bool(self._intervals_ns)
