@@ -11,11 +11,17 @@ from msgs_json.ros.messages import clock_template, joint_state_template
 
 START_NS = 1_700_000_000_000_000_000
 TICK_NS = 2_000_000
+_FOREVER = {"sec": 9223372036, "nsec": 854775807}
 RELIABLE = {
     "history": "keep_last",
     "depth": 1000,
     "reliability": "reliable",
     "durability": "volatile",
+    "deadline": _FOREVER,
+    "lifespan": _FOREVER,
+    "liveliness": "automatic",
+    "liveliness_lease_duration": _FOREVER,
+    "avoid_ros_namespace_conventions": False,
 }
 LATCHED = RELIABLE | {"depth": 1, "durability": "transient_local"}
 FAST = (topics.CLOCK, topics.JOINT_STATES)

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.opcode import Opcode
 from mcap.records import Message
+from rosbags.highlevel import AnyReader
 from tests.biped_bringup.bag.bags import (
     LATCHED,
     RELIABLE,
@@ -307,12 +308,15 @@ def test_a_split_bag_with_one_broken_file_loses_only_what_was_there(tmp_path):
     messages = record(tmp_path / "bag", ticks=TICKS, max_file_bytes=12_000)
     files = sorted((tmp_path / "bag").glob("*.mcap"))
     assert len(files) > 2
-    files[1].write_bytes(files[1].read_bytes()[:-5000])
+    content = files[1].read_bytes()
+    files[1].write_bytes(content[: len(content) // 3])
     report = recover(tmp_path / "bag", tmp_path / "out")
     clock = report.topics[CLOCK]
     assert clock.recovered + clock.lost == TICKS
     assert clock.exact
     assert clock.lost > 0
+    # From the last message before the hole to the end of that file.
+    assert clock.lost_s == pytest.approx(clock.lost * TICK_NS * 1e-9, abs=3e-3)
     numbers = [m.sequence for m in BagReader(tmp_path / "out").messages([CLOCK])]
     assert len(numbers) == clock.recovered
     assert len(messages) == PER_TICK * TICKS + 1
@@ -338,6 +342,14 @@ def test_a_bag_whose_metadata_are_gone_has_lost_nothing(tmp_path, metadata):
     report = recover(tmp_path / "bag", tmp_path / "out")
     assert report.nothing_lost
     assert report.recovered == len(messages)
+
+
+def test_another_reader_reads_what_was_recovered(original, tmp_path):
+    at = position(original, "a chunk's data")
+    case = Case(original, tmp_path / "cases", original.content[:at])
+    with AnyReader([case.out]) as reader:
+        read = [(c.topic, data, time) for c, time, data in reader.messages()]
+    assert sorted(read) == [message[:3] for message in case.messages]
 
 
 def test_records_of_episodes_are_kept(tmp_path):

@@ -65,9 +65,16 @@ class ChannelTally:
             self.lost_ns = self.lost_ns if self.lost else 0
 
     def _close(self, until_ns: int, numbered: int | None) -> None:
-        if not self._hole_known and numbered is None:
-            self.exact = False
-        lost = self._pending if numbered is None else max(numbered, self._pending)
+        """End a hole.
+
+        Args:
+            until_ns: log time at which it ends.
+            numbered: messages that are missing by their numbers, if those tell.
+        """
+        lost = self._pending
+        if not self._hole_known:
+            lost = lost if numbered is None else numbered
+            self.exact = self.exact and numbered is not None
         self.lost += lost
         if lost or not self._hole_known:
             self.lost_ns += max(0, until_ns - self._last_ns)
@@ -82,7 +89,8 @@ class FileTally:
         self._hole = False
         self._indexes: list[MessageIndex] = []
         self._unknown_holes = 0
-        self._last_ns = 0
+        self.last_ns = 0
+        """Last log time that anything tells of; 0 if nothing does."""
 
     def channel(self, number: int) -> ChannelTally:
         """Return the tally of a channel."""
@@ -95,13 +103,13 @@ class FileTally:
     def add(self, message: Message) -> None:
         """Count a message that was recovered."""
         self.channel(message.channel_id).add(message)
-        self._last_ns = max(self._last_ns, message.log_time)
+        self.last_ns = max(self.last_ns, message.log_time)
 
     def add_hole(self, end_ns: int) -> None:
         """Count a stretch that is damaged."""
         self.settle(whole_index=False)
         self._hole = True
-        self._last_ns = max(self._last_ns, end_ns)
+        self.last_ns = max(self.last_ns, end_ns)
 
     def add_index(self, index: MessageIndex) -> None:
         """Take the index of a damaged chunk into account, if there is one."""
@@ -118,7 +126,7 @@ class FileTally:
             return
         for index in self._indexes:
             times = [time for time, _ in index.records]
-            self._last_ns = max(self._last_ns, *times)
+            self.last_ns = max(self.last_ns, *times)
             self.channel(index.channel_id).add_hole(len(times), min(times))
         if not self._indexes or not whole_index:
             self._unknown_holes += 1
@@ -133,4 +141,4 @@ class FileTally:
             self.channel(channel)
         for number, tally in self.channels.items():
             total = None if totals is None else totals.get(number, 0)
-            tally.finish(max(end_ns, self._last_ns), total)
+            tally.finish(max(end_ns, self.last_ns), total)

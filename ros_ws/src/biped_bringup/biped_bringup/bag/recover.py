@@ -82,10 +82,10 @@ def recover(bag: Path, out: Path) -> RecoveryReport:
     try:
         files = data_files(bag) if bag.is_dir() else (bag,)
         with new_bag(out) as writer:
-            recovery = _Recovery(report, writer)
+            recovery = _Recovery(report, writer, _metadata(bag))
             for file in files:
                 recovery.add_file(file)
-            recovery.compare(_metadata(bag), files)
+            recovery.compare(files)
             if not report.recovered and not report.nothing_lost:
                 raise BagError(f"{bag}: holds no message that is whole")
             written = writer.metadata
@@ -109,6 +109,8 @@ class _Recovery:
 
     report: RecoveryReport
     writer: BagWriter
+    told: BagMetadata | None
+    """What metadata.yaml says, as of the bag's end or its last split."""
     _topics: dict[str, BagTopic] = field(default_factory=dict)
     _records: list[Metadata] = field(default_factory=list)
     _last_file: int = 0
@@ -141,23 +143,31 @@ class _Recovery:
         """Return the report of a topic."""
         return self.report.topics.setdefault(name, TopicRecovery())
 
-    def compare(self, told: BagMetadata | None, files: tuple[Path, ...]) -> None:
+    def told_end_ns(self, file: Path) -> int:
+        """Return the last log time of a file as metadata.yaml says, or 0."""
+        files = self.told.files if self.told else ()
+        return max((info.end_ns for info in files if info.path == file.name), default=0)
+
+    def compare(self, files: tuple[Path, ...]) -> None:
         """Take the counts of metadata.yaml, if it was written when the bag ended."""
-        if told is None or not told.files:
+        if self.told is None or not self.told.files:
             return
         names = {file.name for file in files}
-        for missing in (file.path for file in told.files if file.path not in names):
-            self.report.damage.append(f"{missing}: is missing")
-        last = told.files[-1]
+        for info in self.told.files:
+            if info.path not in names:
+                lost_s = 1e-9 * (info.end_ns - info.start_ns)
+                self.report.damage.append(f"{info.path}: is missing, {lost_s:.3f} s")
+        last = self.told.files[-1]
         # At its last split, all that the last file held was latched, and of one moment.
         finished = last.end_ns > last.start_ns and last.message_count >= self._last_file
         if not finished:
             return
         self.report.end_known = True
-        for told_topic in told.topics:
-            topic = self.topic(told_topic.name)
-            topic.lost = max(0, told_topic.message_count - topic.recovered)
+        for told in self.told.topics:
+            topic = self.topic(told.name)
+            topic.lost = max(0, told.message_count - topic.recovered)
             topic.exact = True
+            topic.lost_s = topic.lost_s if topic.lost else 0.0
 
 
 class _FileRecovery:
@@ -268,6 +278,8 @@ class _FileRecovery:
         if summary is not None and summary.statistics is not None:
             end_ns = summary.statistics.message_end_time
             totals = summary.statistics.channel_message_counts
+        elif self._whole.told_end_ns(self._file) > self._tally.last_ns:
+            self._tally.add_hole(self._whole.told_end_ns(self._file))
         self._tally.finish(end_ns, totals)
         for number, tally in self._tally.channels.items():
             channel = self._channels.get(number)
