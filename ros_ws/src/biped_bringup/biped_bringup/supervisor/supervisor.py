@@ -2,7 +2,8 @@
 
 What failures do:
     a node dies: it is started again after a growing pause; the fifth time within ten
-        seconds everything is ended, and the exit status says so.
+        seconds, or in a row without having come up, everything is ended, and the exit
+        status says so.
     the recorder says that it cannot go on (disk full, folder unusable), or keeps dying:
         the recording has stopped, the walk goes on; `done_without` says why.
     a node lives but has said nothing for a while: it is killed, and counts as died.
@@ -148,6 +149,7 @@ class Supervisor:
                     f"did not appear on the graph within {self._patience.ready_s:g} s",
                 )
                 return
+        self._budgets[child.name].ready()
         self._show("supervisor", f"{child.name} is ready (process {child.pid})")
 
     def _look_after(self, child: Child, stopped: Callable[[], bool]) -> None:
