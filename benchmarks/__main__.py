@@ -17,6 +17,7 @@ PARTS = (
     "lockstep",
     "recorder",
     "player",
+    "ros2_verbs",
 )
 
 

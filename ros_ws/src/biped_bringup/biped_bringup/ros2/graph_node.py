@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,6 +17,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
+
+from biped_bringup.cli.signals import stop_requests
 
 HIDDEN_PREFIX = "_"
 """Nodes and topics whose names begin so are not listed unless asked for."""
@@ -156,13 +159,16 @@ def spin(
     chosen = EventsExecutor() if executor is None else executor
     chosen.add_node(node)
     end = None if timeout_s is None else time.monotonic() + timeout_s
-    try:
-        while not finished.done():
+    # A signal ends a turn; within a callback rclpy would report it as a failure.
+    with stop_requests() as stops:
+        while not finished.done() and not stops:
             left = _TURN_S if end is None else min(_TURN_S, end - time.monotonic())
             if left <= 0.0:
-                return False
+                break
             chosen.spin_until_future_complete(finished, timeout_sec=left)
-    finally:
-        chosen.remove_node(node)
-    finished.result()  # raises what a callback has found wrong
-    return True
+    chosen.remove_node(node)
+    if stops:
+        signal.raise_signal(stops[0])
+    if finished.done():
+        finished.result()  # raises what a callback has found wrong
+    return bool(finished.done())

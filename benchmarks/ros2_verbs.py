@@ -1,0 +1,103 @@
+"""What `ros2 topic` costs: wall time of short verbs, CPU of `hz` at 500 Hz.
+
+Wall time includes the start of the interpreter, rclpy and discovery. The publisher
+announces itself as the supervisor's nodes do.
+"""
+
+from __future__ import annotations
+
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+from benchmarks.report import Figure
+from biped_bringup.supervisor.environment import node_environment, private_domain
+
+_TOPIC = "/joint_states"
+_VERBS = (
+    ("topic", "list"),
+    ("topic", "info", "-v", _TOPIC),
+    ("topic", "type", _TOPIC),
+    ("topic", "find", "sensor_msgs/msg/JointState"),
+    ("topic", "echo", "--once", _TOPIC),
+    ("interface", "show", "sensor_msgs/msg/JointState"),
+)
+_REPEATS = 5
+_VERB_BOUND_S = 1.5
+_HZ_S = 10.0
+_RATE_HZ = 500.0
+_PUBLISHER = f"""
+import time, rclpy
+from sensor_msgs.msg import JointState
+from rclpy.serialization import serialize_message
+rclpy.init()
+node = rclpy.create_node("publisher")
+publisher = node.create_publisher(JointState, "{_TOPIC}", 1000)
+twelve = [0.1] * 12
+names = [f"joint_{{i}}" for i in range(12)]
+message = serialize_message(
+    JointState(name=names, position=twelve, velocity=twelve, effort=twelve))
+begin, ticks = time.monotonic(), 0
+while True:
+    publisher.publish(message)
+    ticks += 1
+    time.sleep(max(0.0, begin + ticks / {_RATE_HZ} - time.monotonic()))
+"""
+
+
+def measure() -> Iterator[Figure]:
+    """Yield the figures."""
+    environment = node_environment(private_domain(), "LOCALHOST")
+    publisher = subprocess.Popen(
+        [sys.executable, "-c", _PUBLISHER], env=environment, stderr=subprocess.DEVNULL
+    )
+    del environment["FASTRTPS_DEFAULT_PROFILES_FILE"]  # verbs have their own
+    try:
+        time.sleep(2.0)
+        for words in _VERBS:
+            times = sorted(_wall_time_s(words, environment) for _ in range(_REPEATS))
+            name = f"ros2 {' '.join(words)}, median of {_REPEATS}"
+            yield Figure(name, times[_REPEATS // 2], "s", _VERB_BOUND_S)
+        rate_hz, cpu_share = _hz(environment)
+        yield Figure(f"ros2 topic hz {_TOPIC}, CPU", 100.0 * cpu_share, "%", 50.0)
+        yield Figure(
+            "ros2 topic hz, deviation from the rate",
+            100.0 * abs(rate_hz / _RATE_HZ - 1.0),
+            "%",
+            1.0,
+        )
+    finally:
+        publisher.kill()
+        publisher.wait()
+
+
+def _wall_time_s(words: tuple[str, ...], environment: dict[str, str]) -> float:
+    begin = time.monotonic()
+    subprocess.run(
+        [sys.executable, "-m", "biped_bringup.ros2.main", *words],
+        env=environment,
+        stdout=subprocess.DEVNULL,
+        check=True,
+    )
+    return time.monotonic() - begin
+
+
+def _hz(environment: dict[str, str]) -> tuple[float, float]:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "biped_bringup.ros2.main", "topic", "hz", _TOPIC],
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(_HZ_S)
+    process.send_signal(signal.SIGINT)
+    shown, _ = process.communicate()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    rates = re.findall(r"average rate: (\S+)", shown)
+    return float(rates[-1]), cpu_s / _HZ_S

@@ -1,0 +1,232 @@
+"""`ros2 topic` on a real graph, against the formats of the original."""
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Twist, TwistStamped, Vector3
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String
+
+from biped_bringup.ros2.main import main
+
+GOLDEN = Path(__file__).parents[1] / "biped_bringup/ros2/golden/topic_verbs"
+TIMEOUT_S = 60.0
+PERIOD_S = 0.02
+
+
+class Talker:
+    """A node that publishes as the tutorials' do, in a thread of its own."""
+
+    def __init__(self, domain: int) -> None:
+        self._context = rclpy.Context()
+        rclpy.init(context=self._context, domain_id=domain)
+        self.node = Node("talker", context=self._context)
+        self.heard: list[str] = []
+        twist = self.node.create_publisher(Twist, "cmd_vel", 10)
+        stamped = self.node.create_publisher(TwistStamped, "stamped", 10)
+        text = self.node.create_publisher(String, "chatter", 10)
+        latched = self.node.create_publisher(
+            String,
+            "latched",
+            QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        )
+        unreliable = self.node.create_publisher(
+            String,
+            "unreliable",
+            QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        )
+        self.node.create_publisher(String, "two_types", 10)
+        # A participant of its own, since one cannot have two types under a name.
+        self._other_context = rclpy.Context()
+        rclpy.init(context=self._other_context, domain_id=domain)
+        self._other = Node("other", context=self._other_context, enable_rosout=False)
+        self._other.create_publisher(Twist, "two_types", 10)
+        self.node.create_subscription(
+            String, "chit_chatter", lambda message: self.heard.append(message.data), 10
+        )
+        latched.publish(String(data='{"end": "completed"}'))
+
+        def publish() -> None:
+            twist.publish(Twist(linear=Vector3(x=2.0)))
+            message = TwistStamped()
+            message.header.stamp = self.node.get_clock().now().to_msg()
+            stamped.publish(message)
+            text.publish(String(data="Hello World"))
+            unreliable.publish(String(data="perhaps"))
+
+        self.node.create_timer(PERIOD_S, publish)
+        self._thread = threading.Thread(target=self._spin)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        executor = SingleThreadedExecutor(context=self._context)
+        executor.add_node(self.node)
+        with contextlib.suppress(ExternalShutdownException):
+            executor.spin()
+
+    def close(self) -> None:
+        rclpy.shutdown(context=self._context)
+        self._thread.join(TIMEOUT_S)
+        self.node.destroy_node()
+        self._other.destroy_node()
+        rclpy.shutdown(context=self._other_context)
+
+
+@pytest.fixture
+def talker(domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Talker]:
+    """Return a talker; verbs of this process and its children look at its domain."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    # What the verbs add to the environment goes with the test.
+    profile = (
+        Path(sys.modules["biped_bringup.ros2"].__path__[0]) / "quick_discovery.xml"
+    )
+    monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(profile))
+    monkeypatch.setenv(
+        "AMENT_PREFIX_PATH", os.environ.get("AMENT_PREFIX_PATH", sys.prefix)
+    )
+    started = Talker(domain)
+    yield started
+    started.close()
+
+
+def ros2(*words: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", "biped_bringup.ros2.main", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_one_shot_verbs_print_what_the_original_prints(
+    talker: Talker, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def printed(*words: str) -> str:
+        assert main(["topic", *words]) == 0
+        return capfd.readouterr().out
+
+    assert printed("info", "/cmd_vel") == (GOLDEN / "info.txt").read_text()
+    verbose = printed("info", "-v", "/chatter")
+    verbose = re.sub(r"GID: [0-9a-f.]+\n", "GID: <GID>\n", verbose)
+    verbose = re.sub(r"\(Depth\): \w+( \(\d+\))?", "(Depth): <HISTORY>", verbose)
+    assert verbose == (GOLDEN / "info_verbose.txt").read_text()
+    assert printed("type", "/chatter") == "std_msgs/msg/String\n"
+    assert printed("find", "geometry_msgs/msg/Twist").splitlines()[0] == "/cmd_vel"
+    twist = printed("echo", "--once", "/cmd_vel")
+    assert twist == (GOLDEN / "echo_twist.txt").read_text()
+    row = printed("echo", "--once", "--csv", "/cmd_vel")
+    assert row == "2.0,0.0,0.0,0.0,0.0,0.0\n"
+    field = printed("echo", "--once", "--field", "linear.x", "/cmd_vel")
+    assert field == "2.0\n---\n"
+    raw = printed("echo", "--once", "--raw", "-f", "/chatter")
+    assert raw.startswith("b'\\x00\\x01\\x00\\x00\\x0c\\x00\\x00\\x00Hello World\\x00")
+    info = printed("echo", "--once", "-i", "/chatter").splitlines()
+    assert info[0].startswith("publication_sequence_number: ")
+    assert info[-3:] == ["---", "data: Hello World", "---"]
+
+
+def test_lists_have_the_forms_of_the_original(
+    talker: Talker, capfd: pytest.CaptureFixture[str]
+) -> None:
+    second = talker.node.create_publisher(Twist, "cmd_vel", 10)
+    main(["topic", "list", "-v"])
+    shown = capfd.readouterr().out.splitlines(keepends=True)
+    for line in (GOLDEN / "list_verbose.txt").read_text().splitlines(keepends=True):
+        if "parameter_events" not in line:  # has as many publishers as there are nodes
+            assert line in shown
+    main(["topic", "list", "-t"])
+    assert "/chatter [std_msgs/msg/String]\n" in capfd.readouterr().out
+    main(["topic", "list", "-c"])
+    assert capfd.readouterr().out.strip().isdecimal()
+    assert second is not None
+
+
+def test_echo_suits_latched_and_unreliable_publishers(
+    talker: Talker, capfd: pytest.CaptureFixture[str]
+) -> None:
+    main(["topic", "echo", "--once", "--json", "/latched"])
+    assert capfd.readouterr().out == '{\n  "end": "completed"\n}\n---\n'
+    main(["topic", "echo", "--once", "/unreliable"])
+    assert capfd.readouterr().out == "data: perhaps\n---\n"
+
+
+def test_what_cannot_be_is_one_line_and_status_1(
+    talker: Talker, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for words, error in (
+        (["info", "/nowhere"], "Unknown topic '/nowhere'"),
+        (["echo", "/no where"], "'/no where': "),
+        (["echo", "/nowhere"], "Could not determine the type for the passed topic"),
+        (["echo", "/chatter", "no_msgs/Foo"], "The passed message type is invalid: "),
+        (["echo", "/two_types"], "Cannot echo topic '/two_types', as it contains more"),
+        (["echo", "--field", ".", "/chatter"], "Invalid field value '.'"),
+        (["echo", "--field", "d", "/chatter"], "Invalid field 'd': 'String' object "),
+        (["echo", "--filter", "m.", "/chatter"], "Invalid filter 'm.': "),
+        (["delay", "/chatter"], "msg does not have header"),
+        (["pub", "/x", "std_msgs/msg/Foo"], "The passed message type is invalid: "),
+        (["pub", "/x", "std_msgs/msg/String", "{a: ["], "The passed value is no valid"),
+        (["pub", "/x", "std_msgs/msg/String", "a: 1"], "Failed to populate field: "),
+        (
+            ["pub", "-1", "--max-wait-time-secs", "0.1", "/x", "std_msgs/msg/Empty"],
+            "Timed out waiting for subscribers: Expected 1 subscribers but only got 0",
+        ),
+    ):
+        # Unknown topics need no patience here: the talker is known or it is not.
+        verb = words[0]
+        spin = ["--spin-time", "1"] if "/nowhere" in words else []
+        assert main(["topic", verb, *spin, *words[1:]]) == 1
+        lines = capfd.readouterr().err.splitlines()
+        assert len(lines) == 1 and lines[0].startswith(error)
+
+
+def test_what_is_published_arrives_and_is_printed(
+    talker: Talker, capfd: pytest.CaptureFixture[str]
+) -> None:
+    string = "std_msgs/msg/String"
+    words = ["pub", "-t", "4", "-p", "2", "-r", "50", "/chit_chatter", string]
+    assert main(["topic", *words, "data: fizz"]) == 0
+    lines = capfd.readouterr().out
+    lines = lines[lines.index("publisher: ") :]
+    assert lines == (GOLDEN / "pub_every_second.txt").read_text()
+    end = time.monotonic() + TIMEOUT_S
+    while len(talker.heard) < 4 and time.monotonic() < end:
+        time.sleep(0.01)
+    assert talker.heard == ["fizz"] * 4
+    twist = "{linear: {x: 2.0}, angular: {z: 1.8}}"
+    words = ["pub", "--once", "-w", "0", "/turn", "geometry_msgs/msg/Twist", twist]
+    assert main(["topic", *words]) == 0
+    assert capfd.readouterr().out == (GOLDEN / "pub_twist.txt").read_text()
+
+
+def test_rates_are_printed_until_interrupted(talker: Talker) -> None:
+    stats = r"\tmin: \S+s max: \S+s std dev: \d+\.\d{5}s window: \d+\n"
+    sizes = r"\tMessage size mean: \S+ \w?B min: \S+ \w?B max: \S+ \w?B\n"
+    verbs = {
+        ("hz", "/chatter"): r"average rate: \d+\.\d{3}\n" + stats,
+        ("bw", "/chatter"): r"\S+ \w?B/s from \d+ messages\n" + sizes,
+        ("delay", "/stamped"): r"average delay: -?\d+\.\d{3}\n" + stats,
+    }
+    started = {words: ros2("topic", *words) for words in verbs}
+    for words, process in started.items():
+        assert process.stdout is not None
+        shown = process.stdout.readline()
+        if words[0] == "bw":
+            assert shown == "Subscribed to [/chatter]\n"
+            shown = process.stdout.readline()
+        shown += process.stdout.readline()
+        assert re.fullmatch(verbs[words], shown)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=TIMEOUT_S)
+        assert (process.returncode, errors) == (130, "")
