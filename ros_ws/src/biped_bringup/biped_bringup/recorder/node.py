@@ -35,7 +35,6 @@ from biped_bringup.recorder.selection import selection_of
 from biped_bringup.recorder.settings import RecorderSettings
 from msgs_json import topics
 from msgs_json.ros.guarded import GuardedNode
-from msgs_json.ros.parameters import declared_settings
 from msgs_json.ros.running import run_node
 from msgs_json.settings import SettingsError
 from msgs_json.topics import Topic
@@ -63,7 +62,7 @@ class RecorderNode(GuardedNode):
             SettingsError: a parameter is wrong.
         """
         super().__init__(NAME, **options)
-        self._settings = declared_settings(self, RecorderSettings)
+        self._settings = self.settings_from_parameters(RecorderSettings)
         if not self._settings.folder:
             raise SettingsError("folder", "", "must name the folder of the bag")
         selection = selection_of(self._settings)
