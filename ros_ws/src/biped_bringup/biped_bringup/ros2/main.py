@@ -27,6 +27,7 @@ INTERRUPTED = 130
 TERMINATED = 143
 
 COMMANDS = {
+    "bag": "Various rosbag related commands",
     "doctor": "Check ROS setup and other potential issues",
     "interface": "Show information about ROS interfaces",
     "node": "Various node related sub-commands",
