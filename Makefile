@@ -5,7 +5,7 @@ READY := .venv/.installed
 OUT := bags/quick
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test lint format bench lock clean
+.PHONY: help install run test lint format bench colcon lock clean
 
 help:  ## list these targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
@@ -31,6 +31,9 @@ format: $(READY)  ## sort imports and lay out the code
 
 bench: $(READY)  ## time the simulation and the learner
 	$(BIN)/python -m benchmarks
+
+colcon: $(READY)  ## build the ROS workspace into ros_ws/install
+	cd ros_ws && $(CURDIR)/$(BIN)/colcon build
 
 # Versions already in a lock stay as they are; `make lock UPGRADE=-U` renews them all.
 # Local pip settings are shut out, so that nothing of this machine gets into a lock.
