@@ -281,6 +281,33 @@ def test_an_end_from_outside_at_the_start_gives_a_result(cause):
     assert (result.end_cause, session.walking) == (cause, False)
 
 
+# -- walks joined in their middle ------------------------------------------------------
+
+
+@pytest.mark.parametrize("cause", [None, EndCause.ZMP_ERROR, EndCause.PEER_SILENT])
+def test_a_walk_joined_in_its_middle_changes_nothing(cause):
+    session = with_mixed_walks(3)
+    before = state_of(session)
+    result = session.respond(observation(20, end_cause=cause))
+    assert not result.learning
+    assert result.end_cause is (cause or EndCause.PEER_SILENT)
+    assert state_of(session) == before
+
+
+@pytest.mark.parametrize("other", [{"episode": 1}, {"simulation": "another"}])
+def test_the_middle_of_another_walk_is_not_taken_for_that_of_this_one(other):
+    session = new_session()
+    begin(session)
+    result = session.respond(observation(10, **other))
+    assert (result.learning, session.episodes) == (False, 0)
+
+
+def test_after_a_walk_joined_in_its_middle_the_next_one_is_learned_from():
+    session = new_session()
+    session.respond(observation(20))
+    assert result_of(session).learning
+
+
 # -- frozen by a user ------------------------------------------------------------------
 
 

@@ -66,9 +66,22 @@ class OneExecutor:
 
     def spin_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         """Spin until the condition holds; return whether it did in time."""
+        # The executor looks at its own time-out only when no message waits, and while
+        # the robot walks there always is one: a timer looks instead.
         end = time.monotonic() + timeout_s
-        while not condition() and time.monotonic() < end:
-            self._executor.spin_until_future_complete(Future(), timeout_sec=_TURN_S)
+        over: Future = Future()
+
+        def look() -> None:
+            if not over.done() and (condition() or time.monotonic() >= end):
+                over.set_result(None)
+
+        look()
+        timer = self.sim.create_timer(_TURN_S, look)
+        try:
+            if not over.done():
+                self._executor.spin_until_future_complete(over, timeout_s)
+        finally:
+            self.sim.destroy_timer(timer)
         return condition()
 
     def __exit__(
