@@ -80,6 +80,7 @@ def play(
     _check_names(topics, request.remaps)
     context = rclpy.Context()
     rclpy.init(
+        args=[],  # the command line is ours: ROS would read A:=B, too
         context=context,
         domain_id=domain,
         signal_handler_options=rclpy.signals.SignalHandlerOptions.NO,
