@@ -41,6 +41,10 @@ DAMAGE = (
 )
 
 
+class UnusableFileError(BagError):
+    """Not an MCAP file at all, or it cannot be read."""
+
+
 class DamagedFileError(Exception):
     """An MCAP file that is not whole; the text says how this shows."""
 
@@ -61,28 +65,28 @@ def mapped(file: Path) -> Iterator[mmap.mmap]:
     """Map a file into memory, to read.
 
     Raises:
-        BagError: it is empty or cannot be read.
+        UnusableFileError: it is empty or cannot be read.
     """
     try:
         with file.open("rb") as stream:
             if not stream.read(1):
-                raise BagError(f"{file}: empty, nothing was recorded")
+                raise UnusableFileError(f"{file}: empty, nothing was recorded")
             with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as content:
                 yield content
     except OSError as error:
-        raise BagError(f"{file}: cannot be read ({error.strerror})") from None
+        raise UnusableFileError(f"{file}: cannot be read ({error.strerror})") from None
 
 
 def check_file(file: Path) -> None:
     """Return if the file is whole.
 
     Raises:
-        BagError: not an MCAP file at all, or it cannot be read.
+        UnusableFileError: not an MCAP file at all, or it cannot be read.
         DamagedFileError: an MCAP file without its end, or with damaged bytes.
     """
     with mapped(file) as content:
         if content[: len(MAGIC)] != MAGIC:
-            raise BagError(f"{file}: not an MCAP file")
+            raise UnusableFileError(f"{file}: not an MCAP file")
         end = file_end(content)
         if end.data_crc and not data_match(content, end):
             raise DamagedFileError("some of its bytes are damaged")
