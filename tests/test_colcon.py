@@ -36,6 +36,8 @@ class Workspace:
 
     install: Path
     home: Path
+    sources: dict[str, list[Path]]
+    """What each package's module consisted of when the build began."""
 
     def environment(self) -> dict[str, str]:
         """Return all that a fresh shell knows."""
@@ -75,11 +77,22 @@ class Workspace:
         return self.install / package / "lib" / package / file
 
 
+def files_of(package: str) -> list[Path]:
+    """Return code and data of a package, relative to its folder."""
+    folder = WORKSPACE / "src" / package
+    return [
+        file.relative_to(folder)
+        for file in folder.glob(f"{package}/**/*")
+        if file.is_file() and "__pycache__" not in file.parts
+    ]
+
+
 @pytest.fixture(scope="module")
 def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
     """Build all packages, anew."""
     pytest.importorskip("colcon_core")
     base = tmp_path_factory.mktemp("ros_ws")
+    sources = {name: files_of(name) for name in PACKAGES}
     subprocess.run(
         [
             COLCON, "--log-base", base / "log",
@@ -92,7 +105,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
         capture_output=True,
         timeout=PATIENCE_S,
     )  # fmt: skip
-    return Workspace(base / "install", base)
+    return Workspace(base / "install", base, sources)
 
 
 @dataclass(frozen=True)
@@ -195,16 +208,9 @@ def test_python_imports_the_packages_from_the_install_space(
 def test_code_and_data_of_a_package_are_installed(
     workspace: Workspace, package: str
 ) -> None:
-    source = WORKSPACE / "src" / package
     (site_packages,) = workspace.install.glob(f"{package}/lib/python*/site-packages")
-    missing = [
-        file
-        for file in source.glob(f"{package}/**/*")
-        if file.is_file()
-        and "__pycache__" not in file.parts
-        and not (site_packages / file.relative_to(source)).is_file()
-    ]
-    assert missing == []
+    files = workspace.sources[package]
+    assert [file for file in files if not (site_packages / file).is_file()] == []
 
 
 @pytest.mark.parametrize("name", EXECUTABLES)
