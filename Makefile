@@ -12,8 +12,9 @@ help:  ## list these targets
 
 install: $(READY)  ## create .venv with the locked packages and the biped itself
 
-run: $(READY)  ## learn a short walk, then walk it and draw its ZMP
-	$(BIN)/biped learn --preset quick --fresh --out $(OUT)
+run: $(READY)  ## learn a walk on ROS 2, walk it in real time, draw its ZMP
+	$(BIN)/biped up --preset quick --fresh --publish-every 10 --out $(OUT)
+	$(BIN)/biped up --greedy --pace realtime --out $(OUT)
 	$(BIN)/biped walk --memory $(OUT)/memory.npz --figure $(OUT)/zmp.png
 
 test: $(READY)  ## run the tests

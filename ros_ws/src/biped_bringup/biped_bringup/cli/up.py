@@ -10,7 +10,7 @@ from typing import Any
 from rich.console import Console
 
 from biped_bringup.cli.errors import CommandError
-from biped_bringup.cli.learn import INTERRUPTED, MEMORY_FILE
+from biped_bringup.cli.learn import MEMORY_FILE
 from biped_bringup.cli.options import (
     add_settings_options,
     names_settings,
@@ -26,6 +26,7 @@ from biped_bringup.cli.recording import (
 )
 from biped_bringup.cli.signals import stop_requests
 from biped_bringup.cli.status_screen import StatusScreen
+from biped_bringup.cli.up_report import report
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.recorder.run_record import run_record
 from biped_bringup.run_settings import RunSettings
@@ -41,7 +42,6 @@ from biped_bringup.supervisor.supervisor import (
     Supervisor,
 )
 from biped_bringup.training import TrainingRun
-from msgs_json.timing import seconds
 from trajectory_node.waist_reference import WaistReference
 
 NODE_FAILURE = 3
@@ -77,6 +77,11 @@ def add_parser(verbs: Any) -> None:
         "--resume",
         action="store_true",
         help=f"go on from the {MEMORY_FILE} in --out, with its settings and seed",
+    )
+    parser.add_argument(
+        "--fresh",
+        action="store_true",
+        help=f"delete a {MEMORY_FILE} that is in --out, and learn anew",
     )
     parser.add_argument("--seed", type=natural, metavar="N", help="default 0")
     parser.add_argument(
@@ -158,6 +163,9 @@ def run(options: argparse.Namespace) -> int:
         parameters[RECORDER] = recorder_parameters(
             bag, run_data, begun_with, options.record_split
         )
+    if options.fresh:
+        # A learner that finds its memory goes on from it.
+        memory_file.unlink(missing_ok=True)
     domain = private_domain() if options.domain is None else options.domain
     environment = node_environment(domain, options.discovery)
     os.environ.update(environment)  # the supervisor's own node, too
@@ -193,7 +201,7 @@ def run(options: argparse.Namespace) -> int:
     if failure is not None:
         print(f"failed: {failure}; logs are in {folder}")
         return NODE_FAILURE
-    return _report(supervisor, options, memory_file, interrupted=bool(stops))
+    return report(supervisor, options, memory_file, bag, interrupted=bool(stops))
 
 
 def _nodes(text: str) -> list[str]:
@@ -208,6 +216,8 @@ def _settings_and_seed(
     options: argparse.Namespace, memory_file: Path
 ) -> tuple[RunSettings, int]:
     if options.greedy or options.resume:
+        if options.fresh:
+            raise CommandError("--fresh: cannot be given with --greedy or --resume")
         if names_settings(options) or options.seed is not None:
             raise CommandError(
                 "--greedy, --resume: go on with the settings and the seed of the "
@@ -216,36 +226,9 @@ def _settings_and_seed(
         learned = TrainingRun.load(memory_file)
         learned.close()
         return learned.settings, learned.seed
-    if memory_file.exists():
+    if memory_file.exists() and not options.fresh:
         raise CommandError(
             f"{memory_file}: is there already; give --resume to go on with it, "
-            "or another --out"
+            "--fresh to replace it, or another --out"
         )
     return settings_of(options), options.seed or 0
-
-
-def _report(
-    supervisor: Supervisor,
-    options: argparse.Namespace,
-    memory_file: Path,
-    interrupted: bool,
-) -> int:
-    status, result = supervisor.graph.status, supervisor.graph.result
-    if options.greedy and result is not None:
-        print(
-            f"greedy walk: {result.end_cause} after {seconds(result.control_ticks):g} s"
-            f", peak ZMP error {1000 * result.peak_zmp_error_m:.1f} mm"
-        )
-    elif status is not None:
-        print(
-            f"{'learned' if status.learned else 'not learned yet'}: "
-            f"{status.episodes} episodes, {status.simulated_s:.1f} simulated s, "
-            f"{status.basis_states} states, {status.fixed_states} fixed\n"
-            f"memory  {memory_file}"
-        )
-    if interrupted:
-        print(f"interrupted; go on with biped up --resume --out {options.out}")
-        return INTERRUPTED
-    if options.greedy:
-        return 0 if result is not None and result.completed else 1
-    return 0 if status is not None and status.learned else 1
