@@ -63,7 +63,11 @@ def _array(rows: Iterable[Sequence[float]]) -> NDArray[np.float64]:
     return flat.reshape(len(rows), -1)
 
 
-@njit(cache=True)
+@njit(
+    "UniTuple(float64, 7)"
+    "(float64[:, ::1], float64[:, ::1], float64[::1], float64[::1], int64)",
+    cache=True,
+)
 def _sums(
     measured: NDArray[Any],
     q_reference: NDArray[Any],

@@ -9,17 +9,19 @@ from pathlib import Path
 import pytest
 import yaml
 
-# Parallel test processes must not meet: xdist numbers its workers gw0, gw1, ...
-WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
-_FIRST_DOMAIN = 40
+# Parallel runs must not meet, neither workers of one nor two people's on one machine.
+_DOMAINS_PER_PROCESS = 10
+_FIRST_DOMAIN, _DOMAINS = 2, 98
 
 
 @pytest.fixture
 def domain(request: pytest.FixtureRequest) -> int:
     """Return a ROS domain that no test running at the same time uses."""
-    return _FIRST_DOMAIN + 10 * WORKER + hash(request.node.nodeid) % 10
+    own = os.getpid() * _DOMAINS_PER_PROCESS
+    each = hash(request.node.nodeid) % _DOMAINS_PER_PROCESS
+    return _FIRST_DOMAIN + (own + each) % _DOMAINS
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import float64, int64, njit
 from numpy.typing import NDArray
 
 from msgs_json.timing import (
@@ -41,7 +41,10 @@ def uniform_bspline(u: NDArray[np.floating[Any]], order: int) -> NDArray[np.floa
     return np.where((u > 0.0) & (u < order), total, 0.0)
 
 
-@njit(cache=True)
+@njit(
+    float64[:, ::1](float64[:, ::1], float64[:, ::1], int64),
+    cache=True,
+)
 def weighted_history(
     weights: NDArray[Any], history: NDArray[Any], newest: int
 ) -> NDArray[Any]:

@@ -9,14 +9,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import njit
+from numba import boolean, float64, int64, njit, void
 from numpy.typing import NDArray
 
 # Machine code kept on disk is renewed when its own file changes, not when a file that
 # it calls into does: compiled functions here call only others of their own file.
 
 
-@njit(cache=True)
+@njit(
+    boolean(
+        int64, int64[:, :, :, ::1], int64[:, :, ::1], int64, float64, int64[:, :, ::1]
+    ),
+    cache=True,
+)
 def judge_state(
     k: int,
     failures: NDArray[Any],
@@ -57,7 +62,18 @@ def judge_state(
     return penalty_state
 
 
-@njit(cache=True)
+@njit(
+    boolean(
+        int64,
+        int64[::1],
+        int64,
+        int64[:, :, ::1],
+        int64[:, :, ::1],
+        int64[:, :, :, ::1],
+        int64,
+    ),
+    cache=True,
+)
 def count_selection(
     k: int,
     chosen: NDArray[Any],
@@ -87,7 +103,21 @@ def count_selection(
     return changed
 
 
-@njit(cache=True)
+@njit(
+    void(
+        int64,
+        float64,
+        int64,
+        int64,
+        int64,
+        int64[::1],
+        int64[:, ::1],
+        boolean[:, ::1],
+        float64[:, :, ::1],
+        float64[:, :, :, ::1],
+    ),
+    cache=True,
+)
 def add_penalty(
     penalty: int,
     value: float,
@@ -114,7 +144,20 @@ def add_penalty(
                 p[k, penalty, i, j] += value * eligibility[k, i, j]
 
 
-@njit(cache=True)
+@njit(
+    void(
+        int64,
+        int64,
+        int64,
+        int64,
+        int64,
+        int64[::1],
+        int64[:, ::1],
+        int64[:, :, :, ::1],
+        int64[:, :, :, ::1],
+    ),
+    cache=True,
+)
 def count_failures(
     penalty: int,
     newest: int,

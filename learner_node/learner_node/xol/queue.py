@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import boolean, float64, int64, njit, void
 from numpy.typing import NDArray
 
 from learner_node.xol.states import doubled
@@ -18,7 +18,19 @@ _FIRST_CAPACITY = 64
 _NO_PLACE = -1
 
 
-@njit(cache=True)
+@njit(
+    void(
+        int64,
+        int64[::1],
+        int64,
+        int64[::1],
+        int64[:, ::1],
+        boolean[:, ::1],
+        int64[:, :, ::1],
+        float64[:, :, ::1],
+    ),
+    cache=True,
+)
 def push_decision(
     state: int,
     chosen: NDArray[Any],
@@ -48,7 +60,10 @@ def push_decision(
         eligibility[state, i, j] += 1.0
 
 
-@njit(cache=True)
+@njit(
+    void(float64, int64[::1], int64[:, ::1], boolean[:, ::1], float64[:, :, ::1]),
+    cache=True,
+)
 def decay_eligibility(
     discount: float,
     states: NDArray[Any],

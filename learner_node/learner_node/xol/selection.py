@@ -9,11 +9,22 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import float64, int64, njit, void
 from numpy.typing import NDArray
 
 
-@njit(cache=True)
+@njit(
+    void(
+        int64,
+        float64[::1],
+        float64[:, :, ::1],
+        int64[:, :, ::1],
+        int64,
+        float64,
+        int64[::1],
+    ),
+    cache=True,
+)
 def choose_roulette(
     k: int,
     draws: NDArray[Any],
@@ -43,7 +54,12 @@ def choose_roulette(
                     break
 
 
-@njit(cache=True)
+@njit(
+    void(
+        int64, float64[:, :, ::1], float64[:, :, :, ::1], int64[:, :, ::1], int64[::1]
+    ),
+    cache=True,
+)
 def choose_greedy(
     k: int,
     q: NDArray[Any],
@@ -71,7 +87,10 @@ def choose_greedy(
                 chosen[i] = j
 
 
-@njit(cache=True)
+@njit(
+    void(int64, float64[::1], float64[:, :, :, ::1], int64[:, :, ::1], int64[::1]),
+    cache=True,
+)
 def choose_ranked(
     k: int,
     draws: NDArray[Any],

@@ -23,7 +23,12 @@ _BLOCK = 512
 _SAME_CELL_SQUARED_DISTANCE = 1e-6
 
 
-@njit(cache=True)
+# With their types given, functions are compiled when they are imported, once for all,
+# and not in the middle of a first walk that others wait for.
+@njit(
+    "Tuple((int64, float64))(int64, float64[::1], int64[::1], float64[:, ::1], int64)",
+    cache=True,
+)
 def nearest_state(
     group: int,
     point: NDArray[Any],
@@ -139,7 +144,7 @@ class BasisStates:
             if squared > self._reach_squared:
                 k = self._append(discrete, point)
             self.life[k] = self.settings.life_episodes
-        return k
+        return int(k)
 
     def replace(
         self,
