@@ -7,6 +7,7 @@ from tests.biped_bringup.bag.recorded_run import LEARNER, RecordedRun
 
 from biped_bringup.bag.recomputed_cost import FROM_OBSERVATIONS, FROM_TOPICS
 from biped_bringup.bag.verify import verify
+from biped_bringup.bag.verify_report import Verdict
 from biped_bringup.run_settings import load_settings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
@@ -55,7 +56,7 @@ def change_correction(messages, place, change, learner=LEARNER):
 
 def test_every_correction_comes_out_again(run, messages):
     found = verify(run.new_session(), messages)
-    assert found.verified
+    assert found.verdict is Verdict.VERIFIED
     assert found.corrections == len(places(messages, topics.CORRECTION))
 
 
@@ -109,7 +110,7 @@ def test_a_missing_correction_is_found(run, messages):
     del messages[places(messages, topics.CORRECTION)[200]]
     found = verify(run.new_session(), messages)
     assert found.differences == 1
-    assert not found.verified
+    assert found.verdict is Verdict.NOT_VERIFIED
 
 
 def test_a_correction_that_nobody_asked_for_is_found(run, messages):
@@ -132,7 +133,7 @@ def test_a_changed_result_is_found(run, messages):
 def test_another_seed_is_no_match(run, messages):
     settings = run.settings.learner
     other = LearningSession(settings, run.new_session().walk_ticks, SEED + 1)
-    assert not verify(other, messages).verified
+    assert verify(other, messages).verdict is Verdict.NOT_VERIFIED
 
 
 def test_of_the_middle_of_a_run_nothing_is_claimed(run, messages):
@@ -156,7 +157,29 @@ def test_of_a_bag_without_a_walk_in_its_middle_only_the_first_part_is_checked(
 def test_a_recording_that_ends_in_a_walk_is_checked_to_its_end(run, messages):
     end = places(messages, topics.OBSERVATION)[250] + 1
     found = verify(run.new_session(), messages[:end])
-    assert found.verified
+    assert 0 < found.corrections == found.identical
+
+
+def test_a_walk_without_its_end_is_verified_only_as_far_as_recorded(run, messages):
+    end = places(messages, topics.OBSERVATION)[250] + 1
+    found = verify(run.new_session(), messages[:end])
+    assert found.verdict is Verdict.AS_FAR_AS_RECORDED
+
+
+def test_a_difference_in_a_walk_without_its_end_is_still_one(run, messages):
+    place = places(messages, topics.CORRECTION)[240]
+    change_correction(messages, place, lambda value_m: value_m + 1e-12)
+    end = places(messages, topics.OBSERVATION)[250] + 1
+    found = verify(run.new_session(), messages[:end])
+    assert found.verdict is Verdict.NOT_VERIFIED
+
+
+def test_a_walk_that_was_only_offered_lacks_nothing(run, messages):
+    results = places(messages, topics.EPISODE)
+    offered = next(i for i in places(messages, topics.OBSERVATION) if i > results[2])
+    found = verify(run.new_session(), messages[: offered + 1])
+    assert found.walks[-1].corrections == 0
+    assert found.verdict is Verdict.VERIFIED
 
 
 def test_a_learner_that_was_started_again_is_not_followed(run, messages):
@@ -166,7 +189,7 @@ def test_a_learner_that_was_started_again_is_not_followed(run, messages):
             change_correction(messages, place, lambda value_m: value_m, "learner-2")
     found = verify(run.new_session(), messages)
     assert "started again" in found.walks[-1].not_checked
-    assert not found.verified
+    assert found.verdict is Verdict.NOT_VERIFIED
 
 
 def test_topics_may_be_recorded_out_of_step(run, messages):
@@ -176,7 +199,7 @@ def test_topics_may_be_recorded_out_of_step(run, messages):
         range(len(messages)), key=lambda i: (i + late.get(messages[i][0], 0), i)
     )
     found = verify(run.new_session(), [messages[i] for i in order])
-    assert found.verified
+    assert found.verdict is Verdict.VERIFIED
     assert all(walk.cost.source == FROM_TOPICS for walk in found.walks)
 
 
@@ -218,7 +241,7 @@ def test_frozen_walks_are_checked_greedily(run):
     frozen.walk(2)
     found = verify(frozen.new_session(), frozen.messages)
     frozen.close()
-    assert found.verified
+    assert found.verdict is Verdict.VERIFIED
     assert [walk.learning for walk in found.walks] == [True] * 3 + [False] * 2
 
 
@@ -228,4 +251,4 @@ def test_the_middle_of_a_frozen_run_can_be_checked():
     status, rest = frozen.messages[:1], from_walk(frozen.messages, 2)
     found = verify(frozen.new_session(), status + rest)
     frozen.close()
-    assert found.verified
+    assert found.verdict is Verdict.VERIFIED

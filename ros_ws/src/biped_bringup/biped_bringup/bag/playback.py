@@ -123,6 +123,11 @@ def play(
         )
         _spin(node, player, stopped)
         played_in_all = player.finish()
+        if player.lag is not None:
+            node.get_logger().warning(
+                f"rate {request.rate:g} could not be kept: messages came up to "
+                f"{played_in_all.worst_lateness_s:.2f} s late"
+            )
         node.await_acknowledgements()
         return played_in_all
     finally:
@@ -137,10 +142,17 @@ def _spin(node: PlayerNode, player: Player, stopped: Callable[[], bool]) -> None
     try:
         node.await_subscribers(stopped)
         player.start()
+        told = False
         while player.playing:
             executor.spin_once(timeout_sec=_TURN_S)
             if stopped():
                 player.stop()
+            if player.lag is not None and not told:
+                told = True
+                node.get_logger().warning(
+                    f"too fast for this machine: {player.lag.late_s:.2f} s behind, "
+                    f"so far at rate {player.lag.rate:.3g}"
+                )
     finally:
         executor.shutdown()
 

@@ -43,6 +43,10 @@ class PlaybackClock:
             return self._since_ns if self._steps else None
         return self._since_ns + round((log_ns - self._log_ns) / self._rate)
 
+    def achieved_rate(self, log_ns: int, now_ns: int) -> float:
+        """Return the rate at which it has come to a log time since it last went on."""
+        return (log_ns - self._log_ns) / max(1, now_ns - self._since_ns)
+
     def took(self, log_ns: int) -> None:
         """Take note that a message is being published; while paused, that is a step."""
         if self.paused:

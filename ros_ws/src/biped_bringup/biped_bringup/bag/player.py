@@ -3,6 +3,8 @@
 What failures do:
     a message is late (machine busy, disk slow): it is published at once; those after it
         keep their own due times.
+    messages get later and later, as the asked rate is too fast for the machine: as
+        above; `lag` tells, once they are late by a quarter of a second.
     publishing or reading fails: playing ends there, and `finish` raises the error.
 """
 
@@ -12,9 +14,22 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from biped_bringup.bag.playback_clock import FLAT_OUT, PlaybackClock
 from biped_bringup.bag.playback_schedule import TimedMessage
+
+# Waking up takes about as long: what is due by then is published in the same turn.
+_AT_ONCE_NS = 250_000
+_LAG_NS = 250_000_000
+
+
+class Lag(NamedTuple):
+    """Where playing was when it was first found to be far behind."""
+
+    late_s: float
+    rate: float
+    """At which it had got there."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +75,8 @@ class Player:
         self._rate, self._loop = rate, loop
         self._changed = threading.Condition()
         self._stopped = False
+        self.lag: Lag | None = None
+        """None while the asked rate is kept."""
         self._clock = PlaybackClock(start_ns, rate, time.monotonic_ns(), paused=paused)
         self._count = 0
         self._passes = 0
@@ -146,14 +163,17 @@ class Player:
                 now_ns = time.monotonic_ns()
                 if due_ns is None:
                     self._changed.wait()
-                elif due_ns > now_ns:
+                elif due_ns > now_ns + _AT_ONCE_NS:
                     self._changed.wait(1e-9 * (due_ns - now_ns))
                 else:
-                    self._take_note(log_ns, now_ns - due_ns)
+                    self._take_note(log_ns, now_ns, now_ns - due_ns)
                     return True
         return False
 
-    def _take_note(self, log_ns: int, late_ns: int) -> None:
+    def _take_note(self, log_ns: int, now_ns: int, late_ns: int) -> None:
         if not self._clock.paused and self._rate != FLAT_OUT:
             self._worst_ns = max(self._worst_ns, late_ns)
+            if late_ns > _LAG_NS and self.lag is None:
+                rate = self._clock.achieved_rate(log_ns, now_ns)
+                self.lag = Lag(1e-9 * late_ns, rate)
         self._clock.took(log_ns)

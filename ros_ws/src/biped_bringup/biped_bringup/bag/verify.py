@@ -10,7 +10,8 @@ What is found, and what it means:
         learner makes of the rest cannot be known, so the rest is not checked.
     the bag begins in the middle of a run, or a learner was started again meanwhile: the
         memory of that moment is not in the bag, so what follows is not checked.
-    the bag ends in the middle of a walk: what there is, is checked.
+    the bag ends in the middle of a walk: what there is, is checked, and the verdict
+        says that it is not all.
 """
 
 from __future__ import annotations

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from typing import Any
 
 from biped_bringup.bag.recomputed_cost import CostCheck
+
+
+class Verdict(StrEnum):
+    """What the checks of all walks come to."""
+
+    VERIFIED = "verified"
+    """There are corrections, all came out again, and nothing differs."""
+    AS_FAR_AS_RECORDED = "verified as far as recorded"
+    """The same, but a walk's end and result are not in the bag."""
+    NOT_VERIFIED = "not verified"
 
 
 @dataclass(frozen=True)
@@ -49,6 +60,14 @@ class WalkCheck:
     """Why some or all corrections were not compared."""
     cost: CostCheck | None = None
 
+    @property
+    def cut_short(self) -> bool:
+        """Whether the learner answered, but the walk's end is not in the bag.
+
+        A walk that nobody answered has only been offered: there is nothing to miss.
+        """
+        return self.learning is None and self.corrections > 0
+
     def differ(self, difference: Difference) -> None:
         """Take note of a difference."""
         self.differences += 1
@@ -78,14 +97,18 @@ class Verification:
         return sum(walk.differences for walk in self.walks)
 
     @property
-    def verified(self) -> bool:
-        """There are corrections, all were compared, and nothing differs."""
-        return 0 < self.corrections == self.identical and self.differences == 0
+    def verdict(self) -> Verdict:
+        """What all this comes to."""
+        if not 0 < self.corrections == self.identical or self.differences:
+            return Verdict.NOT_VERIFIED
+        if any(walk.cut_short for walk in self.walks):
+            return Verdict.AS_FAR_AS_RECORDED
+        return Verdict.VERIFIED
 
     def as_mapping(self) -> dict[str, Any]:
         """Return everything as plain values, for JSON."""
         return {
-            "verified": self.verified,
+            "verdict": self.verdict,
             "corrections": self.corrections,
             "identical": self.identical,
             "differences": self.differences,

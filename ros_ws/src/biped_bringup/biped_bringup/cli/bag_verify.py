@@ -11,11 +11,15 @@ from biped_bringup.bag.reader import BagReader
 from biped_bringup.bag.recorded_session import recorded_session
 from biped_bringup.bag.recorded_walks import WANTED
 from biped_bringup.bag.verify import verify
-from biped_bringup.bag.verify_report import Verification
+from biped_bringup.bag.verify_report import Verdict, Verification, WalkCheck
 from biped_bringup.cli.options import add_json_option, print_json
 from msgs_json.wire import MalformedMessageError
 
-DIFFERS = 1
+_STATUS = {
+    Verdict.VERIFIED: 0,
+    Verdict.NOT_VERIFIED: 1,
+    Verdict.AS_FAR_AS_RECORDED: 3,
+}
 
 
 def add_parser(verbs: Any) -> None:
@@ -27,9 +31,17 @@ def add_parser(verbs: Any) -> None:
         "settings, seed and memory, and compare its corrections and results with the "
         "recorded ones, bit for bit; compute ZMP error and T_err anew. Exit status 0 "
         "when every correction was compared and all is the same, 1 when something "
-        "differs or could not be compared, 2 for wrong input.",
+        "differs or could not be compared, 2 for wrong input, 3 when all that was "
+        "recorded is the same but the last walk is cut short.",
     )
     parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
+    parser.add_argument(
+        "--run-of",
+        type=Path,
+        metavar="ORIGINAL",
+        help="take settings, seed and memory from this bag; for recordings of a "
+        "replay, which cannot know them, and for cut bags",
+    )
     add_json_option(parser)
     parser.set_defaults(run=run)
 
@@ -37,7 +49,9 @@ def add_parser(verbs: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Verify and report."""
     bag = BagReader(options.bag)
-    session = recorded_session(bag)
+    session = recorded_session(
+        bag if options.run_of is None else BagReader(options.run_of)
+    )
     try:
         found = verify(session, ((m.topic, m.data) for m in bag.messages(WANTED)))
     except MalformedMessageError as error:
@@ -46,15 +60,14 @@ def run(options: argparse.Namespace) -> int:
         print_json(found.as_mapping())
     else:
         _print(found)
-    return 0 if found.verified else DIFFERS
+    return _STATUS[found.verdict]
 
 
 def _print(found: Verification) -> None:
     for walk in found.walks:
-        kind = {True: "learning", False: "frozen", None: "cut short"}[walk.learning]
         print(
-            f"walk {walk.number} (episode {walk.episode}, {kind}): {walk.identical} of "
-            f"{walk.corrections} corrections identical"
+            f"walk {walk.number} (episode {walk.episode}, {_kind(walk)}): "
+            f"{walk.identical} of {walk.corrections} corrections identical"
         )
         if walk.first_difference is not None:
             more = walk.differences - 1
@@ -74,6 +87,12 @@ def _print(found: Verification) -> None:
         if measured_m:
             print(f"ZMP error: off by {1000 * max(measured_m):.1e} mm at most")
     print(
-        f"{'verified' if found.verified else 'NOT VERIFIED'}: {found.identical} of "
-        f"{found.corrections} corrections identical, {found.differences} differences"
+        f"{found.verdict}: {found.identical} of {found.corrections} corrections "
+        f"identical, {found.differences} differences"
     )
+
+
+def _kind(walk: WalkCheck) -> str:
+    if walk.learning is None:
+        return "cut short" if walk.cut_short else "not begun"
+    return "learning" if walk.learning else "frozen"
