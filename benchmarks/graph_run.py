@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import tempfile
 import threading
 import time
@@ -19,8 +20,12 @@ from biped_bringup.supervisor.supervisor import Supervisor
 from msgs_json import topics
 from msgs_json.ros.guarded import message_type
 from msgs_json.ros.qos import qos_profile
+from msgs_json.timing import CONTROL_PERIOD_US
 
 _TIMEOUT_S = 300.0
+# A serialized message with a header begins with its stamp.
+_CDR_HEADER_BYTES = 4
+_STAMP = struct.Struct("<iI")
 _TURN_S = 0.2
 
 
@@ -31,6 +36,8 @@ class Listener:
         """Join the domain and listen."""
         self.arrivals_ns: list[int] = []
         """When each message of /joint_states came."""
+        self.control_ticks: list[int] = []
+        """Of the simulation's clock, of each of these messages."""
         self.figures: dict[str, str] = {}
         """What sim_node last said in /diagnostics."""
         self._context = rclpy.Context()
@@ -65,8 +72,11 @@ class Listener:
         while not self._stopping.is_set():
             executor.spin_until_future_complete(never, timeout_sec=_TURN_S)
 
-    def _on_joint_states(self, _: bytes) -> None:
+    def _on_joint_states(self, message: bytes) -> None:
         self.arrivals_ns.append(time.monotonic_ns())
+        seconds, nanoseconds = _STAMP.unpack_from(message, _CDR_HEADER_BYTES)
+        microseconds = seconds * 1_000_000 + nanoseconds // 1000
+        self.control_ticks.append(microseconds // CONTROL_PERIOD_US)
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:

@@ -240,7 +240,7 @@ class SimulatedBiped:
         period_s = seconds(max(1, len(self._ticks)))
         quantities = (
             (waist, foot[row].tolist(), 1.0),
-            (watch.contact, segment.zmp_reference[row].tolist(), 1.0),
+            (watch.contact, references.zmp[row], 1.0),
             (velocity, watch.waist_velocity, period_s),
         )
         watch.waist_velocity = velocity[:2]

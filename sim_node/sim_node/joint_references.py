@@ -35,7 +35,8 @@ class JointReferences:
 
 def standing(start: WaistSegment) -> JointReferences:
     """Return references that hold a stance and lead nowhere."""
-    return JointReferences(start, rows=1, q=[], dq=[], zmp=[], phase=_phases(start, 1))
+    zmp = start.zmp_reference[:1].tolist()
+    return JointReferences(start, rows=1, q=[], dq=[], zmp=zmp, phase=_phases(start, 1))
 
 
 def solve(segment: WaistSegment, rows: int) -> tuple[JointReferences, int]:

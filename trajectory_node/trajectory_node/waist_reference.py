@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -90,7 +91,7 @@ class WaistReference:
             TrajectoryError: the correction is not two finite numbers, or the walk is
                 over.
         """
-        if action_m.shape != (2,) or not np.isfinite(action_m).all():
+        if action_m.shape != (2,) or not math.isfinite(sum(action_m)):
             raise TrajectoryError(
                 f"correction {action_m}: must be two finite numbers [m]"
             )
