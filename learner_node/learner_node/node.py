@@ -36,7 +36,7 @@ from msgs_json.ros.messages import correction_template
 from msgs_json.ros.running import run_node
 from msgs_json.wire import decode, encode
 
-NAME = "learner_node"
+NAME = topics.LEARNER_NODE
 _STATUS_PERIOD_S = 1.0
 
 
@@ -93,7 +93,14 @@ class LearnerNode(GuardedNode):
         """Answer observations from now on: no other learner has been heard."""
         if self._corrections is None and self.failure is None:
             self._corrections = self.publisher(topics.CORRECTION)
-            self.listen(topics.OBSERVATION, self._on_observation)
+            self.listen_once_heard(
+                topics.OBSERVATION,
+                self._on_observation,
+                {
+                    self._corrections: topics.TRAJECTORY_NODE,
+                    self._episodes: topics.SIM_NODE,
+                },
+            )
             self._publish_status()
 
     def close(self) -> None:

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+# The nodes know each other by name: a walk begins when all three are connected.
+SIM_NODE = "sim_node"
+TRAJECTORY_NODE = "trajectory_node"
+LEARNER_NODE = "learner_node"
+
 
 @dataclass(frozen=True)
 class Topic:

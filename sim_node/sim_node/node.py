@@ -32,10 +32,8 @@ from sim_node.realtime import Punctuality, RealtimeLoop
 from sim_node.settings import SimNodeSettings
 from sim_node.tick_publisher import TickPublisher
 
-NAME = "sim_node"
+NAME = topics.SIM_NODE
 _WATCH_PERIOD_S = 0.1
-# The learner and the trajectory want every observation.
-_LISTENERS = 2
 
 
 class SimNode(GuardedNode):
@@ -226,16 +224,17 @@ class SimNode(GuardedNode):
         )
         if self._ticks.listeners() < recorders:
             return False
+        # They listen once their own answers get through.
+        peers = (topics.LEARNER_NODE, topics.TRAJECTORY_NODE)
         listeners = self._observations.get_subscription_count()
-        return listeners >= _LISTENERS + recorders and all(
-            self.count_publishers(topic.name) > 0
-            for topic in (topics.WAIST_REFERENCE, topics.CORRECTION, topics.EPISODE)
+        return listeners >= len(peers) + recorders and self.reaches(
+            self._observations, *peers
         )
 
     def _silent_peer(self) -> str:
         for topic, peer in (
-            (topics.CORRECTION, "learner_node"),
-            (topics.WAIST_REFERENCE, "trajectory_node"),
+            (topics.CORRECTION, topics.LEARNER_NODE),
+            (topics.WAIST_REFERENCE, topics.TRAJECTORY_NODE),
         ):
             if self.count_publishers(topic.name) == 0:
                 return f"{peer} (not on the graph)"

@@ -23,7 +23,7 @@ from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
 
-NAME = "trajectory_node"
+NAME = topics.TRAJECTORY_NODE
 
 
 class TrajectoryNode(GuardedNode):
@@ -51,8 +51,10 @@ class TrajectoryNode(GuardedNode):
         self._segments = self.publisher(topics.WAIST_REFERENCE)
         self._stance = self.publisher(topics.STANCE)
         self._stance.publish(self._stance_template.fill(segment_values(stance)))
-        self.listen(topics.OBSERVATION, self._on_observation)
         self.listen(topics.CORRECTION, self._on_correction)
+        self.listen_once_heard(
+            topics.OBSERVATION, self._on_observation, {self._segments: topics.SIM_NODE}
+        )
 
     def _on_observation(self, message: bytes) -> None:
         observation = decode(Observation, string_text(message))

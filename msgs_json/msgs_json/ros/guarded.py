@@ -10,7 +10,7 @@ from __future__ import annotations
 import importlib
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -29,6 +29,7 @@ from msgs_json.wire import MalformedMessageError
 
 Settings = TypeVar("Settings")
 _DIAGNOSTICS_PERIOD_S = 1.0
+_LOOK_PERIOD_S = 0.05
 
 
 class GuardedNode(Node):  # type: ignore[misc]
@@ -116,6 +117,44 @@ class GuardedNode(Node):  # type: ignore[misc]
         self.create_subscription(
             message_type(topic), topic.name, received, qos_profile(topic), raw=True
         )
+
+    def listen_once_heard(
+        self,
+        topic: Topic,
+        handle: Callable[[bytes], None],
+        answers: Mapping[Publisher, str],
+    ) -> None:
+        """Listen to a topic as soon as the answers to it reach whom they are for.
+
+        Middleware connects publishers and subscribers one by one: a node that answers
+        before its answer is wanted speaks to nobody, and the first walk waits in vain.
+
+        Args:
+            topic: to listen to.
+            handle: as for `listen`.
+            answers: publishers of the answers, and the node that waits for each.
+        """
+
+        def look() -> None:
+            if all(
+                self.reaches(publisher, peer) for publisher, peer in answers.items()
+            ):
+                timer.cancel()
+                self.listen(topic, handle)
+
+        timer = self.create_timer(_LOOK_PERIOD_S, look)
+
+    def reaches(self, publisher: Publisher, *peers: str) -> bool:
+        """Return whether a publisher is connected to all its subscribers on the graph.
+
+        Args:
+            publisher: of this node.
+            peers: nodes that must be among the subscribers.
+        """
+        subscribers = self.get_subscriptions_info_by_topic(publisher.topic_name)
+        known = {info.node_name for info in subscribers}
+        connected = int(publisher.get_subscription_count())
+        return known.issuperset(peers) and connected >= len(subscribers)
 
     def guarded(
         self, topic: Topic, handle: Callable[[bytes], None], message: bytes

@@ -22,7 +22,7 @@ from sim_node.node import SimNode
 from trajectory_node.node import TrajectoryNode
 
 # The condition is looked at so often.
-_TURN_S = 0.02
+_TURN_S = 0.004
 
 
 class OneExecutor:
