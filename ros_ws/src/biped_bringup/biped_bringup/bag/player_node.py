@@ -26,22 +26,20 @@ from biped_bringup.bag.playback_qos import playback_qos
 from biped_bringup.bag.playback_schedule import TimedMessage
 from biped_bringup.bag.player import Player
 from biped_bringup.bag.reader import BagTopic
-from biped_bringup.supervisor.environment import node_environment
+from biped_bringup.supervisor.environment import PROFILE_VARIABLE, node_environment
 from msgs_json.ros.guarded import message_type
 from msgs_json.topics import Topic
 
 NAME = "player"
-# After a node has joined, others are found within 0.4 s with our profile of Fast DDS,
-# and within 2.4 s without it.
-_DISCOVERY_S = 2.5
+# A subscriber with our profile of Fast DDS is found within half a second, any other one
+# at its next announcement, 3 s after the last.
+_DISCOVERY_S = 3.5
 _SETTLED_S = 0.8
 _MATCHING_S = 5.0
 _ACKNOWLEDGED_S = 2.0
 # What was published so long ago has arrived, as long as subscribers live.
 _ARRIVED_S = 0.5
 _TURN_S = 0.05
-# What Fast DDS 2, that of Jazzy, reads; the name with FASTDDS came with version 3.
-_PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 _PROFILE = Path(__file__).parent / "player_profile.xml"
 
 
@@ -49,7 +47,7 @@ def player_environment(domain: int, discovery_range: str) -> dict[str, str]:
     """Return the variables that must be set before rclpy is used in the process."""
     return {
         **node_environment(domain, discovery_range),
-        _PROFILE_VARIABLE: str(_PROFILE),
+        PROFILE_VARIABLE: str(_PROFILE),
     }
 
 

@@ -1,0 +1,245 @@
+"""`biped bag play` on a real graph: what subscribers get, and when."""
+
+import json
+import os
+import signal
+from dataclasses import dataclass, field
+
+import pytest
+from rclpy.serialization import deserialize_message
+from rosgraph_msgs.msg import Clock
+from tests.graph.players import (
+    SAMPLE,
+    Listener,
+    Player,
+    interrupt,
+    recorder,
+    wait_for,
+)
+
+from biped_bringup.bag.reader import BagReader
+from biped_bringup.cli.main import main
+from biped_bringup.ros2.main import main as ros2
+from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
+from msgs_json import topics
+
+# Of this process, as those of the `domain` fixture are.
+DOMAIN = 2 + os.getpid() % 98
+INTERRUPTED = 130
+PERIOD_NS = 10_000_000
+BAG = BagReader(SAMPLE)
+ALL = [(t.name, t.type_name, t.latched) for t in BAG.topics.values()]
+LATCHED = {topic.name for topic in BAG.topics.values() if topic.latched}
+STEPS = len(LATCHED) + 1
+
+
+def recorded(topic, start_ns=None, end_ns=None):
+    """Return the bytes of a topic's messages, in order, as they come from the wire."""
+    messages = BAG.messages([topic], start_ns, end_ns)
+    return [on_the_wire(message.data) for message in messages]
+
+
+def on_the_wire(payload):
+    """Fill up to whole 32-bit words, as RTPS does behind what the message says."""
+    return payload + bytes(-len(payload) % 4)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def quick_discovery():
+    """Let the listeners find the players at once."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(PROFILE_VARIABLE, str(PROFILE))
+        yield
+
+
+# -- everything, message for message ---------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=[("--rate", "10"), ("--flat-out",)], ids=str)
+def whole(request):
+    """Play the whole bag; return what was heard, by topic, and in which order."""
+    with Listener(DOMAIN, ALL) as listener, Player(DOMAIN, *request.param) as player:
+        status, words = player.end()
+        assert status == 0, words
+        listener.settle()
+    return listener
+
+
+@pytest.mark.parametrize("topic", sorted(BAG.topics))
+def test_every_message_arrives_as_it_was_recorded(whole, topic):
+    assert whole.heard[topic] == recorded(topic)
+
+
+# -- recorded again --------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def again(tmp_path_factory):
+    """Record a replay; return the new bag."""
+    folder = tmp_path_factory.mktemp("again") / "bag"
+    process = recorder(DOMAIN, folder)
+    try:
+        with Player(DOMAIN, "--rate", "5") as player:
+            status, words = player.end()
+            assert status == 0, words
+    finally:
+        interrupt(process)
+    return folder
+
+
+def verification(capsys, *arguments):
+    status = main(["bag", "verify", "--json", *map(str, arguments)])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def test_a_recorded_replay_is_verified_as_the_original(again, capsys):
+    replayed = verification(capsys, again, "--run-of", SAMPLE)
+    assert replayed == verification(capsys, SAMPLE)
+    assert replayed[0] == 0
+
+
+def test_a_recorded_replay_alone_cannot_be_verified(again, capsys):
+    assert main(["bag", "verify", str(again)]) == 2
+    assert "has no record biped.run" in capsys.readouterr().err
+
+
+# -- paused, step by step, in a loop ---------------------------------------------------
+
+
+@dataclass
+class Session:
+    """What happened while somebody used the services."""
+
+    after_steps: int = 0
+    first: list[str] = field(default_factory=list)
+    late: list[bytes] = field(default_factory=list)
+    answers: dict[str, tuple[bool, str]] = field(default_factory=dict)
+    while_paused: list[int] = field(default_factory=list)
+    passes: int = 0
+    status: int = 0
+    words: str = ""
+
+
+@pytest.fixture(scope="module")
+def session():
+    """Step through a stretch of the walk, play it over and over, and interrupt."""
+    done = Session()
+    options = ("--paused", "--loop", "--start", "8", "--duration", "0.5")
+    with Listener(DOMAIN, ALL) as listener, Player(DOMAIN, *options) as player:
+
+        def ask(verb, key):
+            answer = listener.ask(verb)
+            done.answers[key] = answer.success, answer.message
+
+        for count in range(1, STEPS + 1):
+            ask("step", "step while paused")
+            wait_for(lambda count=count: len(listener.order) >= count)
+        done.after_steps = listener.settle()
+        done.first = list(listener.order)
+        description = topics.ROBOT_DESCRIPTION
+        listener.listen(description.name, description.type_name, True, "late")
+        wait_for(lambda: listener.heard["late"])
+        done.late = list(listener.heard["late"])
+        ask("pause", "pause while paused")
+        ask("resume", "resume")
+        ask("step", "step while playing")
+        wait_for(lambda: len(listener.heard["/biped/stance"]) > 2)
+        ask("pause", "pause")
+        done.while_paused.append(listener.settle())
+        ask("step", "step while paused again")
+        wait_for(lambda: len(listener.order) > done.while_paused[0])
+        done.while_paused.append(listener.settle())
+        done.passes = len(listener.heard["/biped/stance"])
+        done.status, done.words = player.end(signal.SIGINT)
+    return done
+
+
+def test_a_step_publishes_one_message(session):
+    assert session.after_steps == STEPS
+
+
+def test_latched_topics_come_first(session):
+    assert set(session.first[: len(LATCHED)]) == LATCHED
+
+
+def test_who_comes_late_still_gets_what_is_latched(session):
+    assert session.late[0] == recorded(topics.ROBOT_DESCRIPTION.name)[0]
+
+
+def test_resume_plays_on_and_a_loop_begins_again(session):
+    assert session.answers["resume"] == (True, "playing")
+    assert session.passes > 2
+
+
+def test_while_it_is_paused_only_a_step_publishes(session):
+    before, after = session.while_paused
+    assert after == before + 1
+
+
+def test_services_say_what_they_could_not_do(session):
+    assert session.answers["pause while paused"] == (False, "not playing")
+    assert session.answers["step while playing"] == (False, "not paused")
+
+
+def test_ctrl_c_ends_a_paused_loop_with_130(session):
+    assert session.status == INTERRUPTED
+    assert "played" in session.words
+    assert "Traceback" not in session.words
+
+
+# -- some topics, under other names, with a clock --------------------------------------
+
+START_S, DURATION_S = 8.0, 1.0
+ELSEWHERE = "/recorded/zmp"
+
+
+@pytest.fixture(scope="module")
+def part():
+    """Play a second of the ZMP under another name, with the log time as the clock."""
+    zmp = topics.ZMP
+    options = (
+        *("--topics", zmp.name, "--remap", f"{zmp.name}:={ELSEWHERE}", "--clock"),
+        *("--start", str(START_S), "--duration", str(DURATION_S), "--rate", "4"),
+    )
+    there = [*ALL, (ELSEWHERE, zmp.type_name, False)]
+    with Listener(DOMAIN, there) as listener, Player(DOMAIN, *options) as player:
+        status, words = player.end()
+        assert status == 0, words
+        listener.settle()
+    return listener
+
+
+def test_only_what_is_asked_for_is_played(part):
+    assert set(part.heard) == {ELSEWHERE, topics.CLOCK.name}
+
+
+def test_a_remapped_topic_has_its_messages(part):
+    start_ns = BAG.start_ns + round(START_S * 1e9)
+    end_ns = start_ns + round(DURATION_S * 1e9) + 1
+    assert part.heard[ELSEWHERE] == recorded(topics.ZMP.name, start_ns, end_ns)
+
+
+def test_the_clock_is_the_log_time_a_hundred_times_a_second(part):
+    clocks = [deserialize_message(b, Clock).clock for b in part.heard["/clock"]]
+    times_ns = [1_000_000_000 * clock.sec + clock.nanosec for clock in clocks]
+    start_ns = BAG.start_ns + round(START_S * 1e9)
+    ticks = round(DURATION_S * 1e9 / PERIOD_NS)
+    assert times_ns == [start_ns + PERIOD_NS * tick for tick in range(ticks)]
+
+
+# -- with the verbs of ros2 ------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def looped():
+    """Play the whole bag over and over, quickly."""
+    with Player(DOMAIN, "--rate", "10", "--loop") as player:
+        yield player
+
+
+@pytest.mark.parametrize("topic", sorted(BAG.topics))
+def test_topic_echo_shows_every_topic(looped, topic, capfd, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
+    verb = ["topic", "echo", "--once", "--spin-time", "0.1", "--timeout", "30"]
+    assert ros2([*verb, topic]) == 0
+    assert capfd.readouterr().out.endswith("---\n")
