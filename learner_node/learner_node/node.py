@@ -25,6 +25,7 @@ from learner_node.checkpoint import CheckpointError, read_checkpoint, write_chec
 from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
+from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
@@ -163,7 +164,10 @@ class LearnerNode(GuardedNode):
         session = self.session
         frozen = self._settings.frozen
         walked = session.tally.evaluations if frozen else session.episodes
-        self._done = 0 < self._settings.max_episodes <= walked and not session.trial_due
+        # A walk that was cut short because somebody was too slow is walked again.
+        cut_short = frozen and result.end_cause is EndCause.PEER_SILENT
+        enough = 0 < self._settings.max_episodes <= walked and not session.trial_due
+        self._done = enough and not cut_short
         if self._save_due or self._done or session.episodes % every == 0:
             self.save()
             self._save_due = False
