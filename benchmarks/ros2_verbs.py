@@ -1,4 +1,4 @@
-"""What `ros2 topic` costs: wall time of short verbs, CPU of `hz` at 500 Hz.
+"""What `ros2` costs: wall time of short verbs, CPU of `topic hz` at 500 Hz.
 
 Wall time includes the start of the interpreter, rclpy and discovery. The publisher
 announces itself as the supervisor's nodes do.
@@ -24,6 +24,11 @@ _VERBS = (
     ("topic", "type", _TOPIC),
     ("topic", "find", "sensor_msgs/msg/JointState"),
     ("topic", "echo", "--once", _TOPIC),
+    ("node", "list"),
+    ("node", "info", "/publisher"),
+    ("service", "list"),
+    ("service", "type", "/publisher/get_type_description"),
+    ("doctor", "--report"),
     ("interface", "show", "sensor_msgs/msg/JointState"),
 )
 _REPEATS = 5
@@ -55,7 +60,6 @@ def measure() -> Iterator[Figure]:
     publisher = subprocess.Popen(
         [sys.executable, "-c", _PUBLISHER], env=environment, stderr=subprocess.DEVNULL
     )
-    del environment["FASTRTPS_DEFAULT_PROFILES_FILE"]  # verbs have their own
     try:
         time.sleep(2.0)
         for words in _VERBS:

@@ -9,6 +9,10 @@ from pathlib import Path
 import pytest
 import yaml
 
+from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
+
+# The middleware reads its profile once, before the first node of a process.
+os.environ[PROFILE_VARIABLE] = str(PROFILE)
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
 # Parallel runs must not meet, neither workers of one nor two people's on one machine.

@@ -24,13 +24,9 @@ LOOKS = 8
 @pytest.fixture(scope="module", autouse=True)
 def graph():
     """Have the nodes on a domain of their own; the walk is paused."""
-    environment = os.environ | {
-        "ROS_DOMAIN_ID": str(DOMAIN),
-        "FASTDDS_DEFAULT_PROFILES_FILE": str(Path(__file__).parent / "ros2_nodes.xml"),
-    }
     nodes = subprocess.Popen(
         [sys.executable, "-m", "tests.graph.ros2_nodes"],
-        env=environment,
+        env=os.environ | {"ROS_DOMAIN_ID": str(DOMAIN)},
         cwd=Path(__file__).parents[2],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -48,14 +44,11 @@ def graph():
 @pytest.fixture
 def ros2(monkeypatch, capfd):
     """Run a verb in this process; return its status, stdout and stderr."""
-    for name in (
-        "ROS_DOMAIN_ID",
-        "AMENT_PREFIX_PATH",
-        "FASTDDS_DEFAULT_PROFILES_FILE",
-    ):
-        monkeypatch.setenv(name, os.environ.get(name, ""))
-        monkeypatch.delenv(name)
     monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
+    # What the verbs add to the environment goes with the test.
+    monkeypatch.setenv(
+        "AMENT_PREFIX_PATH", os.environ.get("AMENT_PREFIX_PATH", sys.prefix)
+    )
 
     def run(*arguments):
         capfd.readouterr()

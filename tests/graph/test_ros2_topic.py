@@ -90,10 +90,6 @@ def talker(domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Talker]:
     """Return a talker; verbs of this process and its children look at its domain."""
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     # What the verbs add to the environment goes with the test.
-    profile = (
-        Path(sys.modules["biped_bringup.ros2"].__path__[0]) / "quick_discovery.xml"
-    )
-    monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(profile))
     monkeypatch.setenv(
         "AMENT_PREFIX_PATH", os.environ.get("AMENT_PREFIX_PATH", sys.prefix)
     )
@@ -229,14 +225,19 @@ def test_rates_are_printed_until_interrupted(talker: Talker) -> None:
         ("delay", "/stamped"): r"average delay: -?\d+\.\d{3}\n" + stats,
     }
     started = {words: ros2("topic", *words) for words in verbs}
-    for words, process in started.items():
-        assert process.stdout is not None
-        shown = process.stdout.readline()
-        if words[0] == "bw":
-            assert shown == "Subscribed to [/chatter]\n"
+    try:
+        for words, process in started.items():
+            assert process.stdout is not None
             shown = process.stdout.readline()
-        shown += process.stdout.readline()
-        assert re.fullmatch(verbs[words], shown)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=TIMEOUT_S)
-        assert (process.returncode, errors) == (130, "")
+            if words[0] == "bw":
+                assert shown == "Subscribed to [/chatter]\n"
+                shown = process.stdout.readline()
+            shown += process.stdout.readline()
+            assert re.fullmatch(verbs[words], shown)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=TIMEOUT_S)
+            assert (process.returncode, errors) == (130, "")
+    finally:
+        for process in started.values():
+            process.kill()
+            process.communicate()

@@ -1,5 +1,6 @@
 """`ros2 run`: what it finds, what it starts, how it ends."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -10,6 +11,7 @@ import pytest
 
 from biped_bringup.ros2.errors import VerbError
 from biped_bringup.ros2.executables import command_of, executables, packages
+from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
 
 COMMAND = (sys.executable, "-m", "biped_bringup.ros2.main", "run")
 TIMEOUT_S = 60.0
@@ -115,9 +117,9 @@ def test_a_prefix_goes_before_the_executable(prefix):
     assert done.stdout == "trot\n"
 
 
-def test_the_verbs_discovery_profile_does_not_reach_the_node(prefix):
-    script(prefix / "lib/walker/walk", 'echo "$FASTRTPS_DEFAULT_PROFILES_FILE"')
-    assert run("walker", "walk").stdout == "\n"
+def test_the_node_has_the_discovery_profile_of_the_supervisors_nodes(prefix):
+    script(prefix / "lib/walker/walk", f'echo "${PROFILE_VARIABLE}"')
+    assert run("walker", "walk").stdout == f"{PROFILE}\n"
 
 
 @pytest.mark.parametrize(
@@ -141,8 +143,9 @@ def test_the_node_may_end_in_order(prefix, number, whole_group, status):
         (os.killpg if whole_group else os.kill)(process.pid, number)
         assert process.wait(TIMEOUT_S) == status
     finally:
-        process.kill()
-        process.communicate()
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate(timeout=TIMEOUT_S)
 
 
 def test_a_node_that_was_killed_is_told_by_its_signal(prefix):

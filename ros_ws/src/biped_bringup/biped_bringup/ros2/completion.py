@@ -7,17 +7,14 @@ from typing import Any
 
 from biped_bringup.ros2 import message_types
 
-# A shell that waits longer for a TAB seems to hang.
-_LOOK_S = 0.3
-
 
 def topic_names(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
     """Offer the topics that are found at once."""
-    from biped_bringup.ros2.graph_node import graph_node, wait_until
+    from biped_bringup.ros2.graph_node import glance, graph_node
     from biped_bringup.ros2.topics import topics_and_types
 
     with graph_node(argparse.Namespace()) as node:
-        wait_until(lambda: False, _LOOK_S)
+        glance(node)
         hidden = getattr(parsed_args, "include_hidden_topics", False)
         return [name for name, _ in topics_and_types(node, include_hidden=hidden)]
 

@@ -14,7 +14,12 @@ import rclpy
 
 from biped_bringup.ros2.diagnosis import graph, host, installation
 from biped_bringup.ros2.diagnosis.area import Area, complaints, report, summary
-from biped_bringup.ros2.graph_node import add_node_arguments, discover, graph_node
+from biped_bringup.ros2.graph_node import (
+    add_node_arguments,
+    discover,
+    graph_node,
+    settled,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -64,7 +69,7 @@ def _examine(args: argparse.Namespace) -> list[Area]:
         host.shared_memory_area(),
     ]
     with graph_node(args) as node:
-        discover(args)
+        discover(args, until=settled(node))
         topics = graph.topics_of(node)
         return [
             *before,

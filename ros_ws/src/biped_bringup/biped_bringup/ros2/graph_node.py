@@ -27,6 +27,10 @@ DISCOVERY_S = 0.5
 _NAME = "_ros2cli"
 # The rest of Fast DDS's announcement period of 3 s.
 _PATIENCE_S = 2.5
+# A graph that has not changed for so long is known: the parts of one node come within
+# some milliseconds, and nodes within two of their announcements.
+_QUIET_S = 0.25
+_GLANCE_S = 1.0
 # How often the graph is looked at, and how soon Ctrl-C is obeyed.
 _POLL_S = 0.01
 _TURN_S = 0.1
@@ -93,8 +97,9 @@ def discover(
     """Let the node get to know the graph.
 
     A node that misses the answer to its first announcement gets the next one only with
-    the other's periodic announcement, up to 3 s later. So who has not found what it
-    looks for looks longer, unless the user has said how long.
+    the other's periodic announcement: after 0.1 s from the project's own nodes, but up
+    to 3 s from others. So who has not found what it looks for looks longer, unless the
+    user has said how long.
 
     Args:
         args: with `spin_time` [s], waited in any case, since not all comes at once.
@@ -105,15 +110,45 @@ def discover(
         Whether `until` holds.
     """
     spin_time_s = getattr(args, "spin_time", DISCOVERY_S)
-    condition = until or (lambda: False)
-    wait_until(condition if at_once else lambda: False, spin_time_s)
     is_default = spin_time_s == DISCOVERY_S
-    return wait_until(condition, _PATIENCE_S if until and is_default else 0.0)
+    longest_s = spin_time_s + (_PATIENCE_S if until and is_default else 0.0)
+    began = time.monotonic()
+    while True:
+        holds = until is not None and until()
+        waited_s = time.monotonic() - began
+        if waited_s >= longest_s:
+            return holds
+        if holds and (at_once or waited_s >= spin_time_s):
+            return True
+        time.sleep(_POLL_S)
 
 
-def has_company(node: Node) -> bool:
-    """Return whether any other node is known."""
-    return len(node.get_node_names()) > 1
+def settled(node: Node) -> Callable[[], bool]:
+    """Return a condition: others are known, and nothing new has come for a while.
+
+    For lists, which cannot know what they have missed.
+    """
+    seen: object = None
+    since = time.monotonic()
+
+    def holds() -> bool:
+        nonlocal seen, since
+        known = (
+            node.get_node_names_and_namespaces(),
+            node.get_topic_names_and_types(),
+            node.get_service_names_and_types(),
+        )
+        if known != seen:
+            seen, since = known, time.monotonic()
+        others = len(known[0]) > 1
+        return others and time.monotonic() - since >= _QUIET_S
+
+    return holds
+
+
+def glance(node: Node) -> None:
+    """Look at the graph for the shell: a TAB that takes longer seems to hang."""
+    wait_until(settled(node), _GLANCE_S)
 
 
 def wait_until(condition: Callable[[], bool], timeout_s: float) -> bool:

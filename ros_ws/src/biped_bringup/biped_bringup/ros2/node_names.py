@@ -11,7 +11,7 @@ from rclpy.node import Node
 from biped_bringup.ros2.errors import VerbError
 from biped_bringup.ros2.graph_node import (
     HIDDEN_PREFIX,
-    discover,
+    glance,
     graph_node,
     wait_until,
 )
@@ -78,5 +78,5 @@ def complete_node_names(
 ) -> Sequence[str]:
     """Return node names for the shell."""
     with graph_node(parsed_args) as node:
-        discover(parsed_args)
+        glance(node)
         return [name.full for name in node_names(node, hidden=False)]

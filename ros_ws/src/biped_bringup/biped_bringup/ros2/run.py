@@ -11,12 +11,11 @@ import argparse
 import shlex
 import signal
 import subprocess
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from biped_bringup.ros2.completion import completed
-from biped_bringup.ros2.environment import lasting_environment
 from biped_bringup.ros2.errors import VerbError
 from biped_bringup.ros2.executables import command_of, executables, packages
 
@@ -64,22 +63,31 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _run(command: Sequence[str]) -> int:
-    process = subprocess.Popen(command, env=lasting_environment())
-    with _passing_on(process):
-        return process.wait()
+    process: subprocess.Popen[bytes] | None = None
+    early: list[int] = []
 
-
-@contextmanager
-def _passing_on(process: subprocess.Popen[bytes]) -> Iterator[None]:
     def ignore(number: int, _: Any) -> None:
         """The terminal has sent it to the executable, too."""
 
     def pass_on(number: int, _: Any) -> None:
-        process.send_signal(number)
+        if process is None:
+            early.append(number)
+        else:
+            process.send_signal(number)
 
+    with _handlers({signal.SIGINT: ignore, signal.SIGTERM: pass_on}):
+        process = subprocess.Popen(command)
+        for number in early:
+            process.send_signal(number)
+        return process.wait()
+
+
+@contextmanager
+def _handlers(
+    handlers: Mapping[signal.Signals, Callable[[int, Any], None]],
+) -> Iterator[None]:
     old = {
-        signal.SIGINT: signal.signal(signal.SIGINT, ignore),
-        signal.SIGTERM: signal.signal(signal.SIGTERM, pass_on),
+        number: signal.signal(number, handler) for number, handler in handlers.items()
     }
     try:
         yield

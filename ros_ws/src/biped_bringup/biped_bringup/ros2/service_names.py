@@ -9,7 +9,7 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
-from biped_bringup.ros2.graph_node import discover, graph_node
+from biped_bringup.ros2.graph_node import glance, graph_node
 
 
 def add_hidden_argument(parser: argparse.ArgumentParser) -> None:
@@ -61,5 +61,5 @@ def complete_service_types(
 
 def _discovered(args: argparse.Namespace) -> list[tuple[str, Sequence[str]]]:
     with graph_node(args) as node:
-        discover(args)
+        glance(node)
         return service_names_and_types(node, hidden=args.include_hidden_services)

@@ -10,7 +10,9 @@ from pathlib import Path
 # safe on every system.
 FIRST_PRIVATE_DOMAIN, LAST_PRIVATE_DOMAIN = 2, 101
 DISCOVERY_RANGES = ("LOCALHOST", "SUBNET")
-_PROFILE = Path(__file__).parent / "fastdds_profile.xml"
+# As Fast DDS 2, that of Jazzy, names it; the name with FASTDDS came with version 3.
+PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+PROFILE = Path(__file__).parent / "fastdds_profile.xml"
 
 
 def private_domain() -> int:
@@ -31,7 +33,7 @@ def node_environment(domain: int, discovery_range: str) -> dict[str, str]:
         "ROS_AUTOMATIC_DISCOVERY_RANGE": discovery_range,
         "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
-        "FASTRTPS_DEFAULT_PROFILES_FILE": str(_PROFILE),
+        PROFILE_VARIABLE: str(PROFILE),
         "AMENT_PREFIX_PATH": os.environ.get("AMENT_PREFIX_PATH", sys.prefix),
         "PYTHONUNBUFFERED": "1",
         # One thread is enough for arrays of this size, and leaves a core to the others.

@@ -19,10 +19,9 @@ from biped_bringup.ros2.graph_node import (
     add_graph_arguments,
     discover,
     graph_node,
-    wait_until,
+    settled,
 )
 from biped_bringup.ros2.node_names import (
-    LATE_S,
     NodeName,
     complete_node_names,
     node_names,
@@ -58,8 +57,10 @@ def main(args: argparse.Namespace) -> int:
         return node_names(node, hidden=args.include_hidden)
 
     with graph_node(args) as node:
-        discover(args)  # what it has may come later than its name
-        if not wait_until(lambda: wanted in known(), LATE_S):
+        # What a node has may come later than its name.
+        is_settled = settled(node)
+        discover(args, until=lambda: is_settled() and wanted in known())
+        if wanted not in known():
             raise VerbError(f"Unable to find node '{args.node_name}'")
         twins = known().count(wanted)
         if twins > 1:

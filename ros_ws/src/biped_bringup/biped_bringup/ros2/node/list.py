@@ -5,7 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 
-from biped_bringup.ros2.graph_node import add_graph_arguments, discover, graph_node
+from biped_bringup.ros2.graph_node import (
+    add_graph_arguments,
+    discover,
+    graph_node,
+    settled,
+)
 from biped_bringup.ros2.node_names import node_names
 
 _TWINS = (
@@ -31,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the nodes."""
     with graph_node(args) as node:
-        discover(args)
+        discover(args, until=settled(node))
         names = sorted(name.full for name in node_names(node, hidden=args.all))
     if args.count_nodes:
         print(len(names))

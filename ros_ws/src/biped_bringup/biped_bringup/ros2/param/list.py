@@ -10,7 +10,12 @@ from rclpy.node import Node
 
 from biped_bringup.ros2.completion import completed
 from biped_bringup.ros2.errors import VerbError
-from biped_bringup.ros2.graph_node import add_graph_arguments, discover, graph_node
+from biped_bringup.ros2.graph_node import (
+    add_graph_arguments,
+    discover,
+    graph_node,
+    settled,
+)
 from biped_bringup.ros2.node_names import complete_node_names, node_names, require_node
 from biped_bringup.ros2.parameter_services import (
     ParameterServices,
@@ -69,7 +74,7 @@ def main(args: argparse.Namespace) -> int:
             )
             print(*_lines(args, ParameterServices(node, wanted.full)), sep="\n")
             return 0
-        discover(args)
+        discover(args, until=settled(node))
         status = 0
         for name in _nodes_with_parameters(node, hidden=args.include_hidden_nodes):
             try:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from biped_bringup.ros2.graph_node import add_graph_arguments, discover, graph_node
+from biped_bringup.ros2.graph_node import (
+    add_graph_arguments,
+    discover,
+    graph_node,
+    settled,
+)
 from biped_bringup.ros2.service_names import (
     add_hidden_argument,
     service_names_and_types,
@@ -32,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the services."""
     with graph_node(args) as node:
-        discover(args)
+        discover(args, until=settled(node))
         services = service_names_and_types(node, hidden=args.include_hidden_services)
     if args.count_services:
         print(len(services))

@@ -9,7 +9,7 @@ from biped_bringup.ros2.graph_node import (
     add_graph_arguments,
     discover,
     graph_node,
-    has_company,
+    settled,
 )
 from biped_bringup.ros2.topics import topics_and_types
 
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the names of the topics."""
     with graph_node(args) as node:
-        discover(args, until=lambda: has_company(node))
+        discover(args, until=settled(node))
         found = [
             name
             for name, types in topics_and_types(

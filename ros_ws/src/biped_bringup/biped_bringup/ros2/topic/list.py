@@ -10,7 +10,7 @@ from biped_bringup.ros2.graph_node import (
     add_graph_arguments,
     discover,
     graph_node,
-    has_company,
+    settled,
 )
 from biped_bringup.ros2.topics import topics_and_types
 
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the topics."""
     with graph_node(args) as node:
-        discover(args, until=lambda: has_company(node))
+        discover(args, until=settled(node))
         topics = topics_and_types(node, include_hidden=args.include_hidden_topics)
         if args.count_topics:
             print(len(topics))
