@@ -278,8 +278,19 @@ def test_as_a_process_a_verb_ends_with_its_status(ros2):
     assert (done.returncode, done.stdout) == (0, "Integer value is: 255\n")
 
 
-def test_parameter_names_are_completed(ros2, tmp_path):
-    line = "ros2 param get /turtlesim background_"
+@pytest.mark.usefixtures("ros2")
+@pytest.mark.parametrize(
+    ("line", "names"),
+    [
+        ("ros2 topic echo /biped/zmp", ["/biped/zmp", "/biped/zmp_reference"]),
+        ("ros2 node info /t", ["/teleop_turtle", "/trajectory_node", "/turtlesim"]),
+        (
+            "ros2 param get /turtlesim background_",
+            ["background_b", "background_g", "background_r"],
+        ),
+    ],
+)
+def test_names_on_the_graph_are_completed(tmp_path, line, names):
     offered = tmp_path / "offered"
     subprocess.run(
         COMMAND,
@@ -293,5 +304,4 @@ def test_parameter_names_are_completed(ros2, tmp_path):
         },
         timeout=TIMEOUT_S,
     )
-    names = [name.strip() for name in offered.read_text().split("\n")]
-    assert names == ["background_b", "background_g", "background_r"]
+    assert [word.strip() for word in offered.read_text().split("\n")][:3] == names

@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -60,6 +61,19 @@ def test_without_a_verb_the_help_is_printed(
 ) -> None:
     assert main(["topic"]) == 0
     assert "Print the average receiving rate to screen" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", [None, *COMMANDS])
+def test_help_lists_each_verb_with_one_line(
+    command: str | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    verbs = list(COMMANDS) if command is None else verbs_of(command)
+    with pytest.raises(SystemExit) as ended:
+        main([*([command] if command else []), "--help"])
+    assert ended.value.code == 0
+    shown = capsys.readouterr().out
+    for verb in verbs or ():
+        assert re.search(rf"^    {verb} +[A-Z]", shown, re.MULTILINE), verb
 
 
 def test_an_unknown_verb_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
