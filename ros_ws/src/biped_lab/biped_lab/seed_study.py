@@ -53,7 +53,8 @@ def run_seed(seed: int, out: Path, learn_options: list[str]) -> dict[str, Any]:
          "--out", str(folder), *learn_options],
         capture_output=True, text=True,
     )  # fmt: skip
-    if learned.returncode not in (0, 1):
+    # Python itself ends with 1, too, where the program could not even start.
+    if learned.returncode not in (0, 1) or not learned.stdout:
         return {"seed": seed, "error": learned.stderr.strip()}
     run: dict[str, Any] = json.loads(learned.stdout)
     walked = subprocess.run(
