@@ -13,8 +13,9 @@ import yaml
 from tests.biped_bringup.ros2.golden_files import golden
 
 from biped_bringup.ros2.main import main
+from biped_bringup.supervisor.environment import private_domain
 
-DOMAIN = 30 + int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+DOMAIN = private_domain()
 COMMAND = (sys.executable, "-m", "biped_bringup.ros2.main")
 TIMEOUT_S = 90.0
 # Discovery takes as long as it takes; a list may be looked at again.
