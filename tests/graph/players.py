@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from collections import defaultdict
+from contextlib import contextmanager
 from pathlib import Path
 
 import rclpy
@@ -20,8 +21,9 @@ from msgs_json.topics import Topic
 
 SAMPLE = Path(__file__).parents[2] / "bags/sample"
 TIMEOUT_S = 60.0
-# What is on its way on this machine arrives within this time.
-SETTLED_S = 0.3
+# What is on its way on this machine arrives within 0.4 s.
+_TURN_S = 0.05
+_SETTLED_TURNS = 8
 _DEPTH = 20_000
 
 
@@ -62,6 +64,7 @@ class Listener:
     def __init__(self, domain, topics):
         self.heard = defaultdict(list)
         self.order = []
+        self._idle_turns = 0
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = Node("listener", context=self._context, enable_rosout=False)
@@ -105,19 +108,25 @@ class Listener:
         wait_for(future.done)
         return future.result()
 
+    def await_node(self, name):
+        """Wait until a node is on the graph."""
+        wait_for(lambda: name in self._node.get_node_names())
+
     def settle(self):
-        """Wait until nothing more comes; return how many messages have come."""
-        count, since = len(self.order), time.monotonic()
-        end = since + TIMEOUT_S
-        while (now := time.monotonic()) < end and now - since < SETTLED_S:
-            if len(self.order) != count:
-                count, since = len(self.order), now
-            time.sleep(0.01)
-        return count
+        """Wait until nothing more comes; return how many messages have come.
+
+        Counted are the listener's own turns, so that one that a busy machine holds up
+        does not take that for silence.
+        """
+        self._idle_turns = 0
+        wait_for(lambda: self._idle_turns >= _SETTLED_TURNS)
+        return len(self.order)
 
     def _spin(self):
         while not self._ended.is_set():
-            self._executor.spin_once(timeout_sec=0.05)
+            before = len(self.order)
+            self._executor.spin_once(timeout_sec=_TURN_S)
+            self._idle_turns = 0 if len(self.order) > before else self._idle_turns + 1
 
 
 def wait_for(condition):
@@ -128,20 +137,19 @@ def wait_for(condition):
     assert condition()
 
 
+@contextmanager
 def recorder(domain, folder):
-    """Start a recorder of everything."""
-    return subprocess.Popen(
+    """Have everything recorded, until a Ctrl-C at the end."""
+    process = subprocess.Popen(
         [sys.executable, "-m", "biped_bringup.recorder.node", "--ros-args",
          "-p", f"folder:={folder}"],
         env=os.environ | {"ROS_DOMAIN_ID": str(domain)},
         stderr=subprocess.DEVNULL,
     )  # fmt: skip
-
-
-def interrupt(process):
-    """End a process by Ctrl-C."""
-    process.send_signal(signal.SIGINT)
     try:
+        yield
+        process.send_signal(signal.SIGINT)
         process.wait(TIMEOUT_S)
     finally:
         process.kill()
+        process.wait(TIMEOUT_S)

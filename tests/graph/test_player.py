@@ -4,18 +4,12 @@ import json
 import os
 import signal
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import pytest
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
-from tests.graph.players import (
-    SAMPLE,
-    Listener,
-    Player,
-    interrupt,
-    recorder,
-    wait_for,
-)
+from tests.graph.players import SAMPLE, Listener, Player, recorder, wait_for
 
 from biped_bringup.bag.reader import BagReader
 from biped_bringup.cli.main import main
@@ -29,6 +23,7 @@ INTERRUPTED = 130
 PERIOD_NS = 10_000_000
 BAG = BagReader(SAMPLE)
 ALL = [(t.name, t.type_name, t.latched) for t in BAG.topics.values()]
+WITHOUT_DIAGNOSTICS = [t for t in ALL if t[0] != topics.DIAGNOSTICS.name]
 LATCHED = {topic.name for topic in BAG.topics.values() if topic.latched}
 STEPS = len(LATCHED) + 1
 
@@ -52,17 +47,34 @@ def quick_discovery():
         yield
 
 
-# -- everything, message for message ---------------------------------------------------
+# -- everything, message for message, and recorded again -------------------------------
+
+
+@dataclass
+class Replay:
+    """What was heard of a replay, by topic, and its recording."""
+
+    heard: dict[str, list[bytes]]
+    bag: Path
 
 
 @pytest.fixture(scope="module", params=[("--rate", "10"), ("--flat-out",)], ids=str)
-def whole(request):
-    """Play the whole bag; return what was heard, by topic, and in which order."""
-    with Listener(DOMAIN, ALL) as listener, Player(DOMAIN, *request.param) as player:
-        status, words = player.end()
+def whole(request, tmp_path_factory):
+    """Play the whole bag to a listener and a recorder."""
+    folder = tmp_path_factory.mktemp("again") / "bag"
+    # The recorder speaks on /diagnostics, too.
+    diagnostics = topics.DIAGNOSTICS
+    remap = ("--remap", f"{diagnostics.name}:=/recorded/diagnostics")
+    with Listener(DOMAIN, WITHOUT_DIAGNOSTICS) as listener, recorder(DOMAIN, folder):
+        listener.listen(
+            "/recorded/diagnostics", diagnostics.type_name, False, diagnostics.name
+        )
+        listener.await_node("recorder_node")
+        with Player(DOMAIN, *request.param, *remap) as player:
+            status, words = player.end()
         assert status == 0, words
         listener.settle()
-    return listener
+    return Replay(listener.heard, folder)
 
 
 @pytest.mark.parametrize("topic", sorted(BAG.topics))
@@ -70,36 +82,19 @@ def test_every_message_arrives_as_it_was_recorded(whole, topic):
     assert whole.heard[topic] == recorded(topic)
 
 
-# -- recorded again --------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def again(tmp_path_factory):
-    """Record a replay; return the new bag."""
-    folder = tmp_path_factory.mktemp("again") / "bag"
-    process = recorder(DOMAIN, folder)
-    try:
-        with Player(DOMAIN, "--rate", "5") as player:
-            status, words = player.end()
-            assert status == 0, words
-    finally:
-        interrupt(process)
-    return folder
-
-
 def verification(capsys, *arguments):
     status = main(["bag", "verify", "--json", *map(str, arguments)])
     return status, json.loads(capsys.readouterr().out)
 
 
-def test_a_recorded_replay_is_verified_as_the_original(again, capsys):
-    replayed = verification(capsys, again, "--run-of", SAMPLE)
+def test_a_recorded_replay_is_verified_as_the_original(whole, capsys):
+    replayed = verification(capsys, whole.bag, "--run-of", SAMPLE)
     assert replayed == verification(capsys, SAMPLE)
     assert replayed[0] == 0
 
 
-def test_a_recorded_replay_alone_cannot_be_verified(again, capsys):
-    assert main(["bag", "verify", str(again)]) == 2
+def test_a_recorded_replay_alone_cannot_be_verified(whole, capsys):
+    assert main(["bag", "verify", str(whole.bag)]) == 2
     assert "has no record biped.run" in capsys.readouterr().err
 
 

@@ -77,6 +77,17 @@ def test_a_stop_ends_also_what_is_paused():
     assert playing.finish().messages == 0
 
 
+def test_every_step_of_a_loop_is_a_message():
+    published = []
+    playing = player(messages(3), published.append, paused=True, loop=True)
+    playing.start()
+    for count in range(1, 8):
+        playing.step()
+        wait_for(lambda count=count: len(published) == count)
+    playing.stop()
+    assert playing.finish().messages == 7
+
+
 def test_a_loop_goes_on_until_it_is_stopped():
     published = []
     playing = player(messages(5), published.append, loop=True)

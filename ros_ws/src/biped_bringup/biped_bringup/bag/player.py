@@ -150,12 +150,12 @@ class Player:
                 return False
             self._publish(message)
             self._count += 1
-        if not self._await(self._end_ns):
+        if not self._await(self._end_ns, at_end=True):
             return False
         self._passes += 1
         return True
 
-    def _await(self, log_ns: int) -> bool:
+    def _await(self, log_ns: int, *, at_end: bool = False) -> bool:
         """Wait until a log time is due; return whether to go on."""
         with self._changed:
             while not self._stopped:
@@ -167,6 +167,8 @@ class Player:
                     self._changed.wait(1e-9 * (due_ns - now_ns))
                 else:
                     self._take_note(log_ns, now_ns, now_ns - due_ns)
+                    if not at_end:  # a step is a message, which the end is not
+                        self._clock.took(log_ns)
                     return True
         return False
 
@@ -176,4 +178,3 @@ class Player:
             if late_ns > _LAG_NS and self.lag is None:
                 rate = self._clock.achieved_rate(log_ns, now_ns)
                 self.lag = Lag(1e-9 * late_ns, rate)
-        self._clock.took(log_ns)
