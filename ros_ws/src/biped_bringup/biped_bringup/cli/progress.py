@@ -6,9 +6,9 @@ import time
 from types import TracebackType
 
 from rich.console import Console
-from rich.live import Live
 from rich.text import Text
 
+from biped_bringup.cli.live_display import LiveDisplay
 from biped_bringup.training import TrainingRun
 from msgs_json.timing import seconds
 
@@ -16,25 +16,15 @@ from msgs_json.timing import seconds
 _PLAIN_INTERVAL_S = 10.0
 
 
-class TrainingProgress:
+class TrainingProgress(LiveDisplay):
     """Shows a run's state on standard error while it goes on."""
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
         """Prepare; show nothing yet."""
+        super().__init__(console, live=True, plain_interval_s=_PLAIN_INTERVAL_S)
         self._run = run
-        self._console = console
-        self._live = (
-            Live(console=console, refresh_per_second=4) if console.is_terminal else None
-        )
         self._since = time.monotonic()
-        self._shown = self._since
         self._ticks_before = run.tally.simulated_ticks + run.tally.evaluation_ticks
-
-    def __enter__(self) -> TrainingProgress:
-        """Start to show."""
-        if self._live is not None:
-            self._live.start()
-        return self
 
     def __exit__(
         self,
@@ -43,23 +33,20 @@ class TrainingProgress:
         trace: TracebackType | None,
     ) -> None:
         """Leave the last state on the screen."""
-        if self._live is not None:
-            self._live.update(Text(self.line()))
-            self._live.stop()
-        else:
+        if not self.redraw(self._text):
             self._print_line()
+        super().__exit__(kind, error, trace)
 
     def update(self) -> None:
         """Show the run as it stands."""
-        now = time.monotonic()
-        if self._live is not None:
-            self._live.update(Text(self.line()))
-        elif now - self._shown >= _PLAIN_INTERVAL_S:
-            self._shown = now
+        if not self.redraw(self._text) and self.due():
             self._print_line()
 
+    def _text(self) -> Text:
+        return Text(self.line())
+
     def _print_line(self) -> None:
-        self._console.print(self.line(), highlight=False, soft_wrap=True)
+        self.console.print(self.line(), highlight=False, soft_wrap=True)
 
     def line(self) -> str:
         """Return the state in one line."""

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import time
-from types import TracebackType
-
 from rich.console import Console, Group
-from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from biped_bringup.cli.live_display import LiveDisplay
 from biped_bringup.supervisor.supervisor import Supervisor
 from msgs_json.learner_status import LearnerStatus
+from msgs_json.timing import seconds
 
 # How often the learner's state is written where there is no screen to redraw [s].
 _PLAIN_INTERVAL_S = 5.0
 
 
-class StatusScreen:
+class StatusScreen(LiveDisplay):
     """Nodes, learner and the last walk, next to the nodes' own lines."""
 
     def __init__(self, console: Console, live: bool) -> None:
@@ -27,43 +25,20 @@ class StatusScreen:
             console: to write to.
             live: redraw one screen, if the console is a terminal.
         """
-        self._console = console
-        self._live = (
-            Live(console=console, refresh_per_second=4)
-            if live and console.is_terminal
-            else None
-        )
-        self._shown = time.monotonic()
-
-    def __enter__(self) -> StatusScreen:
-        """Start to show."""
-        if self._live is not None:
-            self._live.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Leave the last screen as it is."""
-        if self._live is not None:
-            self._live.stop()
+        super().__init__(console, live, _PLAIN_INTERVAL_S)
 
     def line(self, who: str, text: str) -> None:
         """Show a line of a node or of the supervisor."""
-        self._console.print(f"[{who}] {text}", markup=False, highlight=False)
+        self.console.print(
+            f"[{who}] {text}", markup=False, highlight=False, soft_wrap=True
+        )
 
     def update(self, supervisor: Supervisor) -> None:
         """Show the state of the run."""
-        if self._live is not None:
-            self._live.update(_screen(supervisor))
+        if self.redraw(lambda: _screen(supervisor)):
             return
-        now = time.monotonic()
         status = supervisor.graph.status
-        if status is not None and now - self._shown >= _PLAIN_INTERVAL_S:
-            self._shown = now
+        if status is not None and self.due():
             self.line("learner", _learner_line(status))
 
 
@@ -81,7 +56,7 @@ def _screen(supervisor: Supervisor) -> Group:
         _learner_line(status) if status is not None else "learner: not heard yet",
         (
             f"walk {result.episode}: {result.end_cause} after "
-            f"{result.control_ticks * 0.002:.2f} s, peak ZMP error "
+            f"{seconds(result.control_ticks):.2f} s, peak ZMP error "
             f"{1000 * result.peak_zmp_error_m:.1f} mm"
             if result is not None
             else "no walk has ended yet"
