@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from tests.graph.domains import SHARED, own_domain
 
 from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
 
@@ -15,17 +16,12 @@ from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
 os.environ[PROFILE_VARIABLE] = str(PROFILE)
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
-# Parallel runs must not meet, neither workers of one nor two people's on one machine.
-_DOMAINS_PER_PROCESS = 10
-_FIRST_DOMAIN, _DOMAINS = 2, 98
 
 
 @pytest.fixture
 def domain(request: pytest.FixtureRequest) -> int:
     """Return a ROS domain that no test running at the same time uses."""
-    own = os.getpid() * _DOMAINS_PER_PROCESS
-    each = hash(request.node.nodeid) % _DOMAINS_PER_PROCESS
-    return _FIRST_DOMAIN + (own + each) % _DOMAINS
+    return own_domain(hash(request.node.nodeid) % SHARED)
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """`biped bag play` on a real graph: what subscribers get, and when."""
 
 import json
-import os
 import signal
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +8,7 @@ from pathlib import Path
 import pytest
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
+from tests.graph.domains import MODULE, own_domain
 from tests.graph.players import SAMPLE, Listener, Player, recorder, wait_for
 
 from biped_bringup.bag.reader import BagReader
@@ -17,8 +17,7 @@ from biped_bringup.ros2.main import main as ros2
 from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
 from msgs_json import topics
 
-# Of this process, as those of the `domain` fixture are.
-DOMAIN = 2 + os.getpid() % 98
+DOMAIN = own_domain(MODULE)
 INTERRUPTED = 130
 PERIOD_NS = 10_000_000
 BAG = BagReader(SAMPLE)

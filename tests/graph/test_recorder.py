@@ -20,6 +20,7 @@ from mcap.records import Message
 from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
+from tests.graph.domains import MODULE, own_domain
 
 from biped_bringup.bag.metadata import read_metadata
 from biped_bringup.cli.recording import recorder_parameters
@@ -125,7 +126,11 @@ def run(tmp_path_factory):
     """Return a short run in lockstep, two walks to a file."""
     folder = tmp_path_factory.mktemp("run")
     graph = Graph(
-        folder, 37, max_episodes=EPISODES, split="episode", episodes_per_file=2
+        folder,
+        own_domain(MODULE),
+        max_episodes=EPISODES,
+        split="episode",
+        episodes_per_file=2,
     )
     try:
         graph.walk_on(EPISODES)
@@ -254,7 +259,7 @@ def test_the_run_s_data_are_in_every_file(run):
 def hard_run(tmp_path_factory):
     """Return a run whose recorder is killed, then finds that no more can be written."""
     folder = tmp_path_factory.mktemp("hard")
-    graph = Graph(folder, 36, every_ticks=5)
+    graph = Graph(folder, own_domain(MODULE + 1), every_ticks=5)
     recorder = graph.supervisor.children[RECORDER]
     try:
         graph.walk_on(1)

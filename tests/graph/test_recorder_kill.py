@@ -8,8 +8,7 @@ import random
 
 import pytest
 from benchmarks.recorder_kill import killed_recording, publishing
-
-from biped_bringup.supervisor.environment import private_domain
+from tests.graph.domains import MODULE, own_domain
 
 KILLS = 5
 # A flush every 0.1 s, and as much patience as an overloaded machine needs.
@@ -19,7 +18,7 @@ LONGEST_LOSS_S = 2.0
 @pytest.fixture(scope="module")
 def kills(tmp_path_factory):
     """Recorders killed at random moments while they wrote."""
-    domain = private_domain()
+    domain = own_domain(MODULE)
     chance = random.Random(1)
     folder = tmp_path_factory.mktemp("kills")
     kills = []

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 import yaml
 from tests.biped_bringup.ros2.golden_files import golden
+from tests.graph.domains import MODULE, own_domain
 
 from biped_bringup.ros2.main import main
-from biped_bringup.supervisor.environment import private_domain
 
-DOMAIN = private_domain()
+DOMAIN = own_domain(MODULE)
 COMMAND = (sys.executable, "-m", "biped_bringup.ros2.main")
 TIMEOUT_S = 90.0
 # Discovery takes as long as it takes; a list may be looked at again.

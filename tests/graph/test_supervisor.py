@@ -171,10 +171,10 @@ def test_in_real_time_a_learner_that_stalls_does_not_stop_the_robot(tmp_path, do
 
 
 @pytest.mark.parametrize("after_s", [0.3, 1.0, 2.0, 4.0, 8.0])
-def test_ctrl_c_ends_all_at_every_stage_of_the_start(tmp_path, after_s):
+def test_ctrl_c_ends_all_at_every_stage_of_the_start(tmp_path, domain, after_s):
     process = subprocess.Popen(
         [sys.executable, "-m", "biped_bringup.cli.main", "up", "--preset", "quick",
-         "--no-view", "--out", str(tmp_path)],
+         "--domain", str(domain), "--no-view", "--out", str(tmp_path)],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
