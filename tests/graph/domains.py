@@ -1,9 +1,13 @@
-"""ROS domains for tests: parallel runs must not meet, neither two workers of one run
-nor the runs of two people on one machine."""
+"""ROS domains for tests: parallel tests must not meet.
+
+The workers of one run have ranges that never overlap. Runs of several people on one
+machine begin at different places, so that they seldom meet.
+"""
 
 import os
+import zlib
 
-PER_PROCESS = 10
+PER_WORKER = 10
 # The first ones go round among the tests, the others are modules' own.
 SHARED = 5
 MODULE = 5
@@ -11,5 +15,8 @@ _FIRST, _COUNT = 2, 98  # 0 is everybody's default, beyond 101 ports run out som
 
 
 def own_domain(number: int) -> int:
-    """Return one of the domains of this process, 0 <= number < PER_PROCESS."""
-    return _FIRST + (os.getpid() * PER_PROCESS + number) % _COUNT
+    """Return one of the domains of this worker, 0 <= number < PER_WORKER."""
+    run = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(os.getpid()))
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    place = zlib.crc32(run.encode()) + worker * PER_WORKER + number
+    return _FIRST + place % _COUNT
