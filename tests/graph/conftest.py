@@ -1,5 +1,6 @@
 """Nodes on a real graph, each test on a domain of its own."""
 
+import itertools
 import os
 import subprocess
 import sys
@@ -18,10 +19,16 @@ os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
 
 
+@pytest.fixture(scope="session")
+def numbers() -> Iterator[int]:
+    """Return the numbers of the shared domains, again and again."""
+    return itertools.cycle(range(SHARED))
+
+
 @pytest.fixture
-def domain(request: pytest.FixtureRequest) -> int:
+def domain(numbers: Iterator[int]) -> int:
     """Return a ROS domain that no test running at the same time uses."""
-    return own_domain(hash(request.node.nodeid) % SHARED)
+    return own_domain(next(numbers))
 
 
 @pytest.fixture

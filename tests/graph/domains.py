@@ -7,10 +7,11 @@ machine begin at different places, so that they seldom meet.
 import os
 import zlib
 
-PER_WORKER = 10
-# The first ones go round among the tests, the others are modules' own.
-SHARED = 5
-MODULE = 5
+PER_WORKER = 30
+# The first ones go round among the tests, so that none is used again at once: what one
+# leaves behind takes a while to go. The others are modules' own.
+SHARED = 25
+MODULE = 25
 _FIRST, _COUNT = 2, 98  # 0 is everybody's default, beyond 101 ports run out somewhere
 
 

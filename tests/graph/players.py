@@ -23,7 +23,7 @@ SAMPLE = Path(__file__).parents[2] / "bags/sample"
 TIMEOUT_S = 60.0
 # What is on its way on this machine arrives within 0.4 s.
 _TURN_S = 0.05
-_SETTLED_TURNS = 8
+_SETTLED_TURNS = 20
 _DEPTH = 20_000
 
 
