@@ -117,12 +117,12 @@ def test_a_learner_that_stalls_for_two_seconds_is_not_restarted(graph):
 
 
 def test_a_node_without_a_heartbeat_is_killed_and_started_anew(tmp_path, domain):
-    graph = Graph(tmp_path, domain, patience=Patience(silence_s=5.0))
+    graph = Graph(tmp_path, domain, patience=Patience(silence_s=10.0))
     try:
         assert graph.walks(1)
         child = graph.supervisor.children["trajectory_node"]
         os.kill(child.pid, signal.SIGSTOP)
-        assert graph.wait_for(lambda: child.starts == 2)
+        assert graph.wait_for(lambda: child.starts >= 2)
         assert any("trajectory_node has been silent" in line for line in graph.lines)
         assert graph.walks(2)
     finally:
