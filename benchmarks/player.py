@@ -36,9 +36,9 @@ _COPIES, _CONTROL_TICK_NS = 4, 2_000_000
 def measure() -> list[Figure]:
     """Return how late and how fast messages were played, and how many were lost."""
     # Before rclpy is loaded, here and in the subscriber.
-    from biped_bringup.bag.player_node import player_environment
+    from biped_bringup.supervisor.environment import node_environment
 
-    os.environ.update(player_environment(_DOMAIN, "LOCALHOST"))
+    os.environ.update(node_environment(_DOMAIN, "LOCALHOST"))
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "walk"
         _write_walk(bag)

@@ -9,14 +9,12 @@ from pathlib import Path
 
 import pytest
 import yaml
-from tests.graph.domains import SHARED, own_domain
+from tests.graph.domains import MODULE, SHARED, own_domain
 
-from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
+from biped_bringup.supervisor.environment import LOCALHOST, node_environment
 
 # The middleware reads its profile once, before the first node of a process.
-os.environ[PROFILE_VARIABLE] = str(PROFILE)
-os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
+os.environ.update(node_environment(own_domain(MODULE), LOCALHOST))
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,6 @@ from tests.graph.players import SAMPLE, Listener, Player, recorder, wait_for
 from biped_bringup.bag.reader import BagReader
 from biped_bringup.cli.main import main
 from biped_bringup.ros2.main import main as ros2
-from biped_bringup.supervisor.environment import PROFILE, PROFILE_VARIABLE
 from msgs_json import topics
 
 DOMAIN = own_domain(MODULE)
@@ -36,14 +35,6 @@ def recorded(topic, start_ns=None, end_ns=None):
 def on_the_wire(payload):
     """Fill up to whole 32-bit words, as RTPS does behind what the message says."""
     return payload + bytes(-len(payload) % 4)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def quick_discovery():
-    """Let the listeners find the players at once."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(PROFILE_VARIABLE, str(PROFILE))
-        yield
 
 
 # -- everything, message for message, and recorded again -------------------------------

@@ -117,7 +117,8 @@ def test_a_prefix_goes_before_the_executable(prefix):
     assert done.stdout == "trot\n"
 
 
-def test_the_node_has_the_discovery_profile_of_the_supervisors_nodes(prefix):
+def test_the_node_has_the_discovery_profile_of_the_project(prefix, monkeypatch):
+    monkeypatch.delenv(PROFILE_VARIABLE, raising=False)
     script(prefix / "lib/walker/walk", f'echo "${PROFILE_VARIABLE}"')
     assert run("walker", "walk").stdout == f"{PROFILE}\n"
 

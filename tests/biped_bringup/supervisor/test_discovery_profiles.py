@@ -1,18 +1,26 @@
-"""The Fast DDS profiles: all participants of the project discover each other alike."""
+"""The Fast DDS profiles: what all of the project's participants have in common."""
 
 import xml.etree.ElementTree as ElementTree
 
-from biped_bringup.bag.player_node import player_environment
+import pytest
+
 from biped_bringup.supervisor.environment import PROFILE_VARIABLE, node_environment
 
 
-def discovery(environment: dict[str, str]) -> list[str]:
-    """Return the texts of the discovery settings, in their order."""
+def texts(discovery_range, element):
+    """Return the texts of an element and all that is in it, in their order."""
+    environment = node_environment(3, discovery_range)
     root = ElementTree.parse(environment[PROFILE_VARIABLE]).getroot()
-    (config,) = root.iter("{http://www.eprosima.com}discovery_config")
-    return [f"{item.tag} {(item.text or '').strip()}" for item in config.iter()]
+    (found,) = root.iter(f"{{http://www.eprosima.com}}{element}")
+    return [f"{item.tag} {(item.text or '').strip()}" for item in found.iter()]
 
 
-def test_the_player_discovers_as_all_others_do() -> None:
-    player = discovery(player_environment(3, "LOCALHOST"))
-    assert player == discovery(node_environment(3, "LOCALHOST"))
+@pytest.mark.parametrize("element", ["discovery_config", "data_writer"])
+def test_all_discover_and_repair_alike_wherever_they_look(element):
+    assert texts("LOCALHOST", element) == texts("SUBNET", element)
+
+
+def test_what_is_local_stays_on_the_loopback_interface():
+    assert texts("LOCALHOST", "interfaceWhiteList")[1:] == [
+        "{http://www.eprosima.com}address 127.0.0.1"
+    ]

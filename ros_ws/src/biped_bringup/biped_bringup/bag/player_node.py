@@ -13,7 +13,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from rclpy.duration import Duration
@@ -26,7 +25,6 @@ from biped_bringup.bag.playback_qos import playback_qos
 from biped_bringup.bag.playback_schedule import TimedMessage
 from biped_bringup.bag.player import Player
 from biped_bringup.bag.reader import BagTopic
-from biped_bringup.supervisor.environment import PROFILE_VARIABLE, node_environment
 from msgs_json.ros.guarded import message_type
 from msgs_json.topics import Topic
 
@@ -40,15 +38,6 @@ _ACKNOWLEDGED_S = 2.0
 # What was published so long ago has arrived, as long as subscribers live.
 _ARRIVED_S = 0.5
 _TURN_S = 0.05
-_PROFILE = Path(__file__).parent / "player_profile.xml"
-
-
-def player_environment(domain: int, discovery_range: str) -> dict[str, str]:
-    """Return the variables that must be set before rclpy is used in the process."""
-    return {
-        **node_environment(domain, discovery_range),
-        PROFILE_VARIABLE: str(_PROFILE),
-    }
 
 
 @dataclass

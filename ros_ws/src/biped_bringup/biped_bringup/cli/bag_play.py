@@ -11,12 +11,11 @@ from typing import Any
 
 from biped_bringup.bag.playback import PlayRequest, play
 from biped_bringup.bag.playback_clock import FLAT_OUT
-from biped_bringup.bag.player_node import player_environment
 from biped_bringup.bag.reader import BagReader
 from biped_bringup.cli.errors import CommandError
 from biped_bringup.cli.options import natural
 from biped_bringup.cli.signals import stop_requests
-from biped_bringup.supervisor.environment import DISCOVERY_RANGES
+from biped_bringup.supervisor.environment import DISCOVERY_RANGES, node_environment
 
 INTERRUPTED = 130
 _LAST_DOMAIN = 232
@@ -83,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
     request = _request(options)
     domain = _domain(options.domain)
     bag = BagReader(options.bag)
-    os.environ.update(player_environment(domain, options.discovery))
+    os.environ.update(node_environment(domain, options.discovery))
     with stop_requests() as stops:
         played = play(bag, request, domain, lambda: bool(stops), _tell)
     print(

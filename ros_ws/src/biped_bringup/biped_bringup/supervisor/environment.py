@@ -9,10 +9,12 @@ from pathlib import Path
 # A private domain unless one is given: 0 is everybody's default, 101 the last that is
 # safe on every system.
 FIRST_PRIVATE_DOMAIN, LAST_PRIVATE_DOMAIN = 2, 101
-DISCOVERY_RANGES = ("LOCALHOST", "SUBNET")
+LOCALHOST = "LOCALHOST"
+DISCOVERY_RANGES = (LOCALHOST, "SUBNET")
 # As Fast DDS 2, that of Jazzy, names it; the name with FASTDDS came with version 3.
 PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 PROFILE = Path(__file__).parent / "fastdds_profile.xml"
+LOOPBACK_PROFILE = Path(__file__).parent / "fastdds_loopback.xml"
 
 
 def private_domain() -> int:
@@ -22,18 +24,19 @@ def private_domain() -> int:
 
 
 def node_environment(domain: int, discovery_range: str) -> dict[str, str]:
-    """Return the variables for the supervisor and its nodes.
+    """Return the variables for the supervisor, its nodes and the player.
 
-    Shared-memory transport is off: after `kill -9` it leaves files behind that nobody
-    owns, and on loopback UDP is as good at these rates.
+    Shared memory is off in both ranges; fastdds_loopback.xml says why, and keeps what
+    is LOCALHOST on this machine. To a range of that name the middleware would add it.
     """
+    local = discovery_range == LOCALHOST
     return {
         **os.environ,
         "ROS_DOMAIN_ID": str(domain),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": discovery_range,
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT" if local else discovery_range,
         "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
-        PROFILE_VARIABLE: str(PROFILE),
+        PROFILE_VARIABLE: str(LOOPBACK_PROFILE if local else PROFILE),
         "AMENT_PREFIX_PATH": os.environ.get("AMENT_PREFIX_PATH", sys.prefix),
         "PYTHONUNBUFFERED": "1",
         # One thread is enough for arrays of this size, and leaves a core to the others.

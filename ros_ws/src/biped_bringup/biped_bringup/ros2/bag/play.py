@@ -7,7 +7,6 @@ import os
 import sys
 
 from biped_bringup.bag.playback import PlayRequest, play
-from biped_bringup.bag.player_node import player_environment
 from biped_bringup.bag.reader import BagReader
 from biped_bringup.cli.signals import stop_requests
 from biped_bringup.ros2.arguments import positive_float
@@ -18,6 +17,7 @@ from biped_bringup.ros2.bag_arguments import (
 )
 from biped_bringup.ros2.diagnosis.installation import discovery_range
 from biped_bringup.ros2.errors import VerbError
+from biped_bringup.supervisor.environment import node_environment
 
 _INTERRUPTED = 130
 
@@ -95,7 +95,7 @@ def main(args: argparse.Namespace) -> int:
     domain = _domain(os.environ.get("ROS_DOMAIN_ID") or "0")
     with bag_errors(), stop_requests() as stops:
         bag = BagReader(args.bag_path)
-        os.environ.update(player_environment(domain, discovery_range()))
+        os.environ.update(node_environment(domain, discovery_range()))
         play(bag, request, domain, lambda: bool(stops), _tell)
     return _INTERRUPTED if stops else 0
 
