@@ -15,6 +15,7 @@ from pathlib import Path
 from mcap.reader import make_reader
 
 from benchmarks.report import Figure
+from biped_bringup.bag.records import COUNTS_RECORD
 from biped_bringup.cli.recording import recorder_parameters
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
@@ -71,6 +72,6 @@ def _cpu_s(pid: int) -> float:
 def _counts(bag: Path) -> list[dict[str, int]]:
     with (bag / f"{bag.name}_0.mcap").open("rb") as file:
         for record in make_reader(file).iter_metadata():
-            if record.name == "biped.counts":
+            if record.name == COUNTS_RECORD:
                 return [json.loads(text) for text in record.metadata.values()]
     raise ValueError(f"{bag}: was not ended in order")

@@ -86,23 +86,28 @@ class LearnerNode(GuardedNode):
         self.create_service(SetBool, f"{NAME}/freeze", self._on_freeze)
         self._publish_status()
         if settings.listen_s > 0.0:
-            self._listening = self.create_timer(settings.listen_s, self._take_part)
+            self._listening = self.create_timer(settings.listen_s, self._listened)
         else:
             self._take_part()
 
+    def _listened(self) -> None:
+        """Take part, unless another learner has been heard."""
+        self._listening.cancel()
+        if self.failure is None:
+            self._take_part()
+
     def _take_part(self) -> None:
-        """Answer observations from now on: no other learner has been heard."""
-        if self._corrections is None and self.failure is None:
-            self._corrections = self.publisher(topics.CORRECTION)
-            self.listen_once_heard(
-                topics.OBSERVATION,
-                self._on_observation,
-                {
-                    self._corrections: topics.TRAJECTORY_NODE,
-                    self._episodes: topics.SIM_NODE,
-                },
-            )
-            self._publish_status()
+        """Answer observations from now on."""
+        self._corrections = self.publisher(topics.CORRECTION)
+        self.listen_once_heard(
+            topics.OBSERVATION,
+            self._on_observation,
+            {
+                self._corrections: topics.TRAJECTORY_NODE,
+                self._episodes: topics.SIM_NODE,
+            },
+        )
+        self._publish_status()
 
     def close(self) -> None:
         """Save what was learned, if the session stands between two walks."""

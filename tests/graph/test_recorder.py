@@ -23,9 +23,9 @@ from rosbags.rosbag2 import Reader
 from tests.graph.domains import MODULE, own_domain
 
 from biped_bringup.bag.metadata import read_metadata
+from biped_bringup.bag.records import STATE_KEY
 from biped_bringup.cli.recording import recorder_parameters
 from biped_bringup.node_parameters import node_parameters
-from biped_bringup.recorder.node import STATE_KEY
 from biped_bringup.recorder.run_record import run_record
 from biped_bringup.run_settings import load_settings
 from biped_bringup.supervisor.environment import node_environment

@@ -6,6 +6,8 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
+from tests.payloads import OBSERVATION
 
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation, PhaseFlags
@@ -45,30 +47,7 @@ observations = st.builds(
 
 @pytest.fixture
 def observation() -> Observation:
-    return Observation(
-        simulation="a1",
-        episode=3,
-        clock_ticks=1040,
-        control_tick=40,
-        phase=PhaseFlags(
-            planned_right_support=True,
-            planned_double_support=False,
-            measured_right_support=True,
-            measured_double_support=False,
-            step_index=2,
-        ),
-        waist_in_support_foot_m=(0.01, -0.02),
-        zmp_error_m=(0.003, 0.004),
-        waist_acceleration_m_s2=(0.5, -0.5),
-        worst_zmp_error_m=0.005,
-        worst_joint_velocity_rad_s=1.5,
-        zmp_error_integral_m2_s2=1e-7,
-        joint_error_integral_rad2_s=1e-9,
-        torque_integral_n2m2_s=20.0,
-        mean_joint_error_rad=1e-4,
-        mean_joint_velocity_error_rad_s=1e-3,
-        trajectory_sha256="6f1c",
-    )
+    return replace(OBSERVATION, end_cause=None)
 
 
 @settings(deadline=None, max_examples=100)

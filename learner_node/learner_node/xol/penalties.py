@@ -12,16 +12,21 @@ from typing import Any
 from numba import boolean, float64, int64, njit, void
 from numpy.typing import NDArray
 
+from learner_node.xol.array_types import (
+    COUNTS,
+    INDICES,
+    PENALTY_COUNTS,
+    PENALTY_WEIGHTS,
+    QUEUED_ALTERNATIVES,
+    QUEUED_LIVE,
+    WEIGHTS,
+)
+
 # Machine code kept on disk is renewed when its own file changes, not when a file that
 # it calls into does: compiled functions here call only others of their own file.
 
 
-@njit(
-    boolean(
-        int64, int64[:, :, :, ::1], int64[:, :, ::1], int64, float64, int64[:, :, ::1]
-    ),
-    cache=True,
-)
+@njit(boolean(int64, PENALTY_COUNTS, COUNTS, int64, float64, COUNTS), cache=True)
 def judge_state(
     k: int,
     failures: NDArray[Any],
@@ -62,18 +67,7 @@ def judge_state(
     return penalty_state
 
 
-@njit(
-    boolean(
-        int64,
-        int64[::1],
-        int64,
-        int64[:, :, ::1],
-        int64[:, :, ::1],
-        int64[:, :, :, ::1],
-        int64,
-    ),
-    cache=True,
-)
+@njit(boolean(int64, INDICES, int64, COUNTS, COUNTS, PENALTY_COUNTS, int64), cache=True)
 def count_selection(
     k: int,
     chosen: NDArray[Any],
@@ -110,11 +104,11 @@ def count_selection(
         int64,
         int64,
         int64,
-        int64[::1],
-        int64[:, ::1],
-        boolean[:, ::1],
-        float64[:, :, ::1],
-        float64[:, :, :, ::1],
+        INDICES,
+        QUEUED_ALTERNATIVES,
+        QUEUED_LIVE,
+        WEIGHTS,
+        PENALTY_WEIGHTS,
     ),
     cache=True,
 )
@@ -151,10 +145,10 @@ def add_penalty(
         int64,
         int64,
         int64,
-        int64[::1],
-        int64[:, ::1],
-        int64[:, :, :, ::1],
-        int64[:, :, :, ::1],
+        INDICES,
+        QUEUED_ALTERNATIVES,
+        PENALTY_COUNTS,
+        PENALTY_COUNTS,
     ),
     cache=True,
 )

@@ -9,9 +9,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import boolean, float64, int64, njit, void
+from numba import float64, int64, njit, void
 from numpy.typing import NDArray
 
+from learner_node.xol.array_types import (
+    COUNTS,
+    INDICES,
+    QUEUED_ALTERNATIVES,
+    QUEUED_LIVE,
+    WEIGHTS,
+)
 from learner_node.xol.states import doubled
 
 _FIRST_CAPACITY = 64
@@ -21,13 +28,13 @@ _NO_PLACE = -1
 @njit(
     void(
         int64,
-        int64[::1],
+        INDICES,
         int64,
-        int64[::1],
-        int64[:, ::1],
-        boolean[:, ::1],
-        int64[:, :, ::1],
-        float64[:, :, ::1],
+        INDICES,
+        QUEUED_ALTERNATIVES,
+        QUEUED_LIVE,
+        COUNTS,
+        WEIGHTS,
     ),
     cache=True,
 )
@@ -60,10 +67,7 @@ def push_decision(
         eligibility[state, i, j] += 1.0
 
 
-@njit(
-    void(float64, int64[::1], int64[:, ::1], boolean[:, ::1], float64[:, :, ::1]),
-    cache=True,
-)
+@njit(void(float64, INDICES, QUEUED_ALTERNATIVES, QUEUED_LIVE, WEIGHTS), cache=True)
 def decay_eligibility(
     discount: float,
     states: NDArray[Any],

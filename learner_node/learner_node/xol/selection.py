@@ -12,19 +12,16 @@ import numpy as np
 from numba import float64, int64, njit, void
 from numpy.typing import NDArray
 
-
-@njit(
-    void(
-        int64,
-        float64[::1],
-        float64[:, :, ::1],
-        int64[:, :, ::1],
-        int64,
-        float64,
-        int64[::1],
-    ),
-    cache=True,
+from learner_node.xol.array_types import (
+    COUNTS,
+    DRAWS,
+    INDICES,
+    PENALTY_WEIGHTS,
+    WEIGHTS,
 )
+
+
+@njit(void(int64, DRAWS, WEIGHTS, COUNTS, int64, float64, INDICES), cache=True)
 def choose_roulette(
     k: int,
     draws: NDArray[Any],
@@ -54,12 +51,7 @@ def choose_roulette(
                     break
 
 
-@njit(
-    void(
-        int64, float64[:, :, ::1], float64[:, :, :, ::1], int64[:, :, ::1], int64[::1]
-    ),
-    cache=True,
-)
+@njit(void(int64, WEIGHTS, PENALTY_WEIGHTS, COUNTS, INDICES), cache=True)
 def choose_greedy(
     k: int,
     q: NDArray[Any],
@@ -87,10 +79,7 @@ def choose_greedy(
                 chosen[i] = j
 
 
-@njit(
-    void(int64, float64[::1], float64[:, :, :, ::1], int64[:, :, ::1], int64[::1]),
-    cache=True,
-)
+@njit(void(int64, DRAWS, PENALTY_WEIGHTS, COUNTS, INDICES), cache=True)
 def choose_ranked(
     k: int,
     draws: NDArray[Any],

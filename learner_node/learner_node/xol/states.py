@@ -23,8 +23,6 @@ _BLOCK = 512
 _SAME_CELL_SQUARED_DISTANCE = 1e-6
 
 
-# With their types given, functions are compiled when they are imported, once for all,
-# and not in the middle of a first walk that others wait for.
 @njit(
     "Tuple((int64, float64))(int64, float64[::1], int64[::1], float64[:, ::1], int64)",
     cache=True,

@@ -1,13 +1,12 @@
 """Each walk's record: its result, and the status that the learner sent with it."""
 
 import pytest
+from msgspec.structs import replace
+from tests.payloads import RESULT, STATUS
 
 from biped_bringup.bag.writer import RecordedMessage
 from biped_bringup.recorder.episode_records import EpisodeRecords
 from msgs_json import topics
-from msgs_json.end_cause import EndCause
-from msgs_json.episode_result import CostTerms, EpisodeResult
-from msgs_json.learner_status import LearnerStatus
 from msgs_json.ros.cdr import string_message
 from msgs_json.wire import encode
 
@@ -20,54 +19,15 @@ def opening(at_ns):
 
 def result(at_ns):
     """Return the result of a walk."""
-    payload = EpisodeResult(
-        episode=4,
-        learning=True,
-        end_cause=EndCause.COMPLETED,
-        control_ticks=940,
-        target_ticks=940,
-        peak_zmp_error_m=0.03,
-        peak_joint_velocity_rad_s=3.0,
-        cost=CostTerms(
-            zmp=1.0,
-            final_zmp=0.5,
-            joint_tracking=0.25,
-            joint_torque=0.0,
-            final_joint_position=0.0,
-            final_joint_velocity=0.0,
-        ),
-        t_err_estimate=None,
-        reward=10.0,
-        subtask=0,
-        trajectory_sha256="walk",
-        schedule_complete=False,
-    )
+    payload = replace(RESULT, episode=4, trajectory_sha256="walk")
     text = string_message(encode(payload))
     return RecordedMessage(topics.EPISODE.name, text, at_ns + 5, at_ns)
 
 
 def status(sent_ns, received_ns, memory):
     """Return a status of the learner."""
-    payload = LearnerStatus(
-        instance="learner",
-        active=True,
-        seed=1,
-        target_time_s=1.88,
-        subtask=0,
-        subtasks=11,
-        successes=0,
-        episodes=3,
-        survival=1.0,
-        basis_states=5,
-        fixed_states=0,
-        penalty_states=0,
-        t_err_estimate=None,
-        schedule_complete=False,
-        learned=False,
-        frozen=False,
-        simulated_s=9.0,
-        memory_sha256=memory,
-        trajectory_sha256="chain",
+    payload = replace(
+        STATUS, episodes=3, memory_sha256=memory, trajectory_sha256="chain"
     )
     text = string_message(encode(payload))
     return RecordedMessage(topics.LEARNER_STATUS.name, text, received_ns, sent_ns)
@@ -90,7 +50,7 @@ def test_the_result_is_told():
     record = recorded([opening(100), result(900)])
     assert record["end_cause"] == "completed"
     assert record["control_ticks"] == "940"
-    assert float(record["T_err"]) == 1.75
+    assert float(record["T_err"]) == 1.96875
 
 
 def test_the_status_is_the_last_one_sent_before_the_result():

@@ -6,34 +6,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from tests.learner_node.walking.observations import observation, ticks_until
+from tests.learner_node.walking.small_settings import SETTINGS
 
 from learner_node.walking.learner import WalkLearner
 from learner_node.walking.settings import (
     ActionSettings,
-    LearnerSettings,
     RewardSettings,
-    ScheduleSettings,
 )
-from learner_node.xol.settings import FixedModeSettings, XolSettings
+from learner_node.xol.settings import FixedModeSettings
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 
 # Three subtasks of 3, 5 and 6.2 learning ticks.
 WALK_TICKS = 62
 TARGETS = (30, 50, 62)
-SETTINGS = LearnerSettings(
-    xol=XolSettings(
-        discount=0.5,
-        queue_length=20,
-        failure_reach=2,
-        minimum_selections=1000,
-        selection_memory=0,
-    ),
-    action=ActionSettings(alternatives=5),
-    schedule=ScheduleSettings(
-        successes_per_subtask=2, first_target_s=0.06, extension_s=0.04
-    ),
-)
 
 
 def new_learner(**sections):

@@ -14,7 +14,8 @@ from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microse
 from sim_node.settings import SimNodeSettings
 from trajectory_node.settings import TrajectorySettings
 
-_LOOK_AHEAD_TICKS = 50
+LOOK_AHEAD_TICKS = 50
+"""Rows of a segment beyond its learning tick, for late peers in real time."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ def node_parameters(
         sim=SimNodeSettings(
             sim=settings.sim,
             seed=seed,
-            segment_rows=TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS,
+            segment_rows=TICKS_PER_LEARNING_TICK + LOOK_AHEAD_TICKS,
             publish_every_ticks=publish_every_ticks,
             pace=pace,
             timeout_s=timeout_s,
@@ -75,7 +76,7 @@ def node_parameters(
             gait=settings.gait,
             correction=settings.correction,
             correction_limit_m=settings.learner.action.limit_m,
-            look_ahead_ticks=_LOOK_AHEAD_TICKS,
+            look_ahead_ticks=LOOK_AHEAD_TICKS,
         ),
         learner=LearnerNodeSettings(
             learner=settings.learner,

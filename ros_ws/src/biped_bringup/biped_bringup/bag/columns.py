@@ -25,6 +25,7 @@ from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.timing import NS_PER_S
 from msgs_json.wire import decode
 
 Row = dict[str, Any]
@@ -45,7 +46,6 @@ _JOINT_UNITS = {"position": "rad", "velocity": "rad_s", "effort": "n_m"}
 _AXES = ("x", "y", "z")
 # Endings of field names that are units; the longest that fits is meant.
 _UNITS = ("_m_s2", "_rad_s", "_rad", "_m", "_s")
-_NS_PER_S = 1_000_000_000
 
 
 def row_maker(topic: BagTopic) -> Callable[[bytes], Row]:
@@ -158,7 +158,7 @@ def _is_time(value: Any) -> bool:
 
 
 def _nanoseconds(time: Any) -> int:
-    return int(time.sec) * _NS_PER_S + int(time.nanosec)
+    return int(time.sec) * NS_PER_S + int(time.nanosec)
 
 
 def _plain(value: Any) -> Any:

@@ -14,10 +14,10 @@ from pathlib import Path
 
 from biped_bringup.bag.copying import add_topic, new_bag, recorded, refuse_existing
 from biped_bringup.bag.errors import BagError
-from biped_bringup.bag.info import EPISODE_RECORD, RUN_RECORD
 from biped_bringup.bag.reader import BagMessage, BagReader
+from biped_bringup.bag.records import EPISODE_RECORD, RUN_RECORD
+from msgs_json.timing import NS_PER_S
 
-_NS_PER_S = 1_000_000_000
 _MESSAGES_PER_FLUSH = 1000
 
 
@@ -48,8 +48,8 @@ def stretch_of_time(
     Raises:
         BagError: it holds nothing of the bag.
     """
-    start = 0 if start_s is None else round(start_s * _NS_PER_S)
-    end = bag.duration_ns + 1 if end_s is None else round(end_s * _NS_PER_S)
+    start = 0 if start_s is None else round(start_s * NS_PER_S)
+    end = bag.duration_ns + 1 if end_s is None else round(end_s * NS_PER_S)
     if not 0 <= start < end or start > bag.duration_ns:
         raise BagError(
             f"{bag.path}: from {1e-9 * start:g} s to {1e-9 * end:g} s: must lie within "

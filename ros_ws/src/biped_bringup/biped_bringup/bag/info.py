@@ -8,12 +8,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from biped_bringup.bag.reader import BagReader, BagTopic, MetadataRecord
-
-RUN_RECORD = "biped.run"
-EPISODE_RECORD = "biped.episode"
+from biped_bringup.bag.records import EPISODE_RECORD, RUN_RECORD
+from msgs_json.timing import NS_PER_S
 
 _LABEL_WIDTH = 19
-_NS_PER_S = 1_000_000_000
 _SIZE_UNITS = ("B", "KiB", "MiB", "GiB", "TiB")
 # With service introspection switched on, calls are recorded as topics like this.
 _SERVICE_TOPIC, _SERVICE_TYPE = "/_service_event", "_Event"
@@ -120,13 +118,13 @@ def _size_text(size: int) -> str:
 
 
 def _seconds_text(duration_ns: int) -> str:
-    whole, rest = divmod(duration_ns, _NS_PER_S)
+    whole, rest = divmod(duration_ns, NS_PER_S)
     return f"{whole}.{rest:09d}"
 
 
 def _moment_text(moment_ns: int) -> str:
     """Return local time and seconds of the epoch."""
-    whole, rest = divmod(moment_ns, _NS_PER_S)
+    whole, rest = divmod(moment_ns, NS_PER_S)
     local = time.strftime("%b %e %Y %H:%M:%S", time.localtime(whole))
     return f"{local}.{rest:09d} ({_seconds_text(moment_ns)})"
 

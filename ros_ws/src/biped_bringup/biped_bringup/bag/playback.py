@@ -28,9 +28,9 @@ from biped_bringup.bag.player import Played, Player
 from biped_bringup.bag.player_node import PlayerNode
 from biped_bringup.bag.reader import BagReader, BagTopic
 from msgs_json import topics as contract
+from msgs_json.timing import NS_PER_S
 
 _TURN_S = 0.01
-_NS_PER_S = 1_000_000_000
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ def play(
         )
         node.control(player)
         tell(
-            f"playing {(end_ns - start_ns) / _NS_PER_S:.2f} s of {bag.path}, "
+            f"playing {(end_ns - start_ns) / NS_PER_S:.2f} s of {bag.path}, "
             f"{len(node.topics)} topics, ROS_DOMAIN_ID={domain}"
         )
         _spin(node, player, stopped)
@@ -159,17 +159,17 @@ def _spin(node: PlayerNode, player: Player, stopped: Callable[[], bool]) -> None
 
 def _extent(bag: BagReader, request: PlayRequest) -> tuple[int, int]:
     """Return log times of the first and of the last message to play."""
-    start_ns = bag.start_ns + round(request.start_s * _NS_PER_S)
+    start_ns = bag.start_ns + round(request.start_s * NS_PER_S)
     if bag.message_count == 0:
         raise BagError(f"{bag.path}: holds no message")
     if start_ns > bag.end_ns:
         raise BagError(
             f"--start {request.start_s:g}: must be at most the bag's "
-            f"{bag.duration_ns / _NS_PER_S:.3f} s"
+            f"{bag.duration_ns / NS_PER_S:.3f} s"
         )
     if request.duration_s is None:
         return start_ns, bag.end_ns
-    return start_ns, min(bag.end_ns, start_ns + round(request.duration_s * _NS_PER_S))
+    return start_ns, min(bag.end_ns, start_ns + round(request.duration_s * NS_PER_S))
 
 
 def _topics(bag: BagReader, request: PlayRequest) -> dict[str, BagTopic]:

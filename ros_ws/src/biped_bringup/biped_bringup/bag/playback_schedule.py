@@ -11,9 +11,10 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from msgs_json.timing import NS_PER_S
+
 CLOCK_TOPIC = "/clock"
 CLOCK_PERIOD_NS = 10_000_000
-_NS_PER_S = 1_000_000_000
 _CLOCK = struct.Struct("<4sII")
 _ENCAPSULATION = b"\0\1\0\0"
 
@@ -91,5 +92,5 @@ def with_clock(
 
 def clock_message(log_ns: int) -> TimedMessage:
     """Return a rosgraph_msgs/Clock of a log time."""
-    payload = _CLOCK.pack(_ENCAPSULATION, *divmod(log_ns, _NS_PER_S))
+    payload = _CLOCK.pack(_ENCAPSULATION, *divmod(log_ns, NS_PER_S))
     return TimedMessage(CLOCK_TOPIC, log_ns, payload)

@@ -9,14 +9,13 @@ import yaml
 
 from biped_bringup.bag.errors import BagError
 from biped_bringup.bag.reader import BagReader
+from biped_bringup.bag.records import RUN_RECORD
 from biped_bringup.recorder.run_record import FROM_NOTHING
 from biped_bringup.run_settings import RunSettings
 from learner_node.checkpoint import CheckpointError, read_checkpoint
 from learner_node.walking.session import LearningSession
 from msgs_json.settings import from_mapping
 from msgs_json.timing import CONTROL_PERIOD_US, microseconds
-
-_RUN_RECORD = "biped.run"
 
 
 def recorded_session(bag: BagReader) -> LearningSession:
@@ -26,17 +25,17 @@ def recorded_session(bag: BagReader) -> LearningSession:
         BagError: the bag does not say how the run began.
         SettingsError: its settings are none of this program.
     """
-    record = next(bag.metadata_records(_RUN_RECORD), None)
+    record = next(bag.metadata_records(RUN_RECORD), None)
     if record is None:
         raise BagError(
-            f"{bag.path}: has no record {_RUN_RECORD}, which says with which settings "
+            f"{bag.path}: has no record {RUN_RECORD}, which says with which settings "
             "and which seed the run began"
         )
     try:
         values = yaml.safe_load(record.values["settings"])
         seed, begins_with = int(record.values["seed"]), record.values["begins_with"]
     except (KeyError, ValueError, yaml.YAMLError) as error:
-        raise BagError(f"{bag.path}: its record {_RUN_RECORD}: {error!r}") from None
+        raise BagError(f"{bag.path}: its record {RUN_RECORD}: {error!r}") from None
     settings = from_mapping(RunSettings, values)
     walk_ticks = microseconds(settings.gait.duration_s) // CONTROL_PERIOD_US
     session = LearningSession(settings.learner, walk_ticks, seed)

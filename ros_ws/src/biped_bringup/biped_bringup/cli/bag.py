@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from typing import Any
 
-from biped_bringup.cli import (
-    bag_cut,
-    bag_export,
-    bag_info,
-    bag_play,
-    bag_recover,
-    bag_verify,
-)
+from biped_bringup.cli.verbs import add_verbs
 
-VERBS = (bag_info, bag_play, bag_verify, bag_recover, bag_cut, bag_export)
+VERBS = ("info", "play", "verify", "recover", "cut", "export")
 
 
-def add_parser(verbs: Any) -> None:
+def add_parser(verbs: Any, words: Sequence[str]) -> None:
     """Add the verb and its sub-verbs."""
     parser: argparse.ArgumentParser = verbs.add_parser(
         "bag",
@@ -27,5 +21,4 @@ def add_parser(verbs: Any) -> None:
         "`recover`.",
     )
     sub_verbs = parser.add_subparsers(dest="bag_verb", required=True, metavar="VERB")
-    for verb in VERBS:
-        verb.add_parser(sub_verbs)
+    add_verbs(sub_verbs, "biped_bringup.cli.bag_", VERBS, words)

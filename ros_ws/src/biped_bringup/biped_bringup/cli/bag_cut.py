@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from biped_bringup.cli.errors import CommandError
 from biped_bringup.cli.options import add_json_option, print_json
 
 
-def add_parser(verbs: Any) -> None:
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
     parser: argparse.ArgumentParser = verbs.add_parser(
         "cut",

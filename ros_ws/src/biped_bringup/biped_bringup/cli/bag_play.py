@@ -6,6 +6,7 @@ import argparse
 import math
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,15 +14,17 @@ from biped_bringup.bag.playback import PlayRequest, play
 from biped_bringup.bag.playback_clock import FLAT_OUT
 from biped_bringup.bag.reader import BagReader
 from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.exit_status import DONE, INTERRUPTED
 from biped_bringup.cli.options import natural
 from biped_bringup.cli.signals import stop_requests
-from biped_bringup.supervisor.environment import DISCOVERY_RANGES, node_environment
+from biped_bringup.supervisor.environment import (
+    DISCOVERY_RANGES,
+    LAST_DOMAIN,
+    node_environment,
+)
 
-INTERRUPTED = 130
-_LAST_DOMAIN = 232
 
-
-def add_parser(verbs: Any) -> None:
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
     parser: argparse.ArgumentParser = verbs.add_parser(
         "play",
@@ -89,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
         f"played {played.messages} messages in {played.duration_s:.2f} s, at worst "
         f"{1000 * played.worst_lateness_s:.1f} ms late"
     )
-    return INTERRUPTED if stops else 0
+    return INTERRUPTED if stops else DONE
 
 
 def _tell(line: str) -> None:
@@ -131,8 +134,8 @@ def _remap(text: str) -> tuple[str, str]:
 def _domain(given: int | None) -> int:
     text = os.environ.get("ROS_DOMAIN_ID") or "0"
     domain = given if given is not None else int(text) if text.isdecimal() else -1
-    if not 0 <= domain <= _LAST_DOMAIN:
+    if not 0 <= domain <= LAST_DOMAIN:
         raise CommandError(
-            f"--domain, ROS_DOMAIN_ID: must be a whole number from 0 to {_LAST_DOMAIN}"
+            f"--domain, ROS_DOMAIN_ID: must be a whole number from 0 to {LAST_DOMAIN}"
         )
     return domain

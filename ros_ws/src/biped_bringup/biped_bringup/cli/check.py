@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from typing import Any
 
 import yaml
@@ -19,7 +20,7 @@ from msgs_json.timing import seconds
 from trajectory_node.waist_reference import WaistReference
 
 
-def add_parser(verbs: Any) -> None:
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
     parser: argparse.ArgumentParser = verbs.add_parser(
         "check",

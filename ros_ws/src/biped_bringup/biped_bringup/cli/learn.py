@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
 from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.exit_status import DONE, INTERRUPTED, NOT_ACHIEVED
 from biped_bringup.cli.options import (
     add_json_option,
     add_settings_options,
@@ -27,11 +29,10 @@ from msgs_json.episode_result import EpisodeResult
 
 MEMORY_FILE = "memory.npz"
 LOG_FILE = "episodes.csv"
-INTERRUPTED = 130
 _DEFAULT_OUT = Path("bags/learned")
 
 
-def add_parser(verbs: Any) -> None:
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
     parser: argparse.ArgumentParser = verbs.add_parser(
         "learn",
@@ -126,7 +127,7 @@ def run(options: argparse.Namespace) -> int:
     if stops:
         return INTERRUPTED
     done = summary["schedule_complete"] if options.stop_at_schedule else summary["completed"]  # fmt: skip  # noqa: E501
-    return 0 if done else 1
+    return DONE if done else NOT_ACHIEVED
 
 
 def _training(options: argparse.Namespace) -> TrainingRun:

@@ -14,18 +14,18 @@ from collections.abc import Sequence
 import argcomplete
 
 from biped_bringup.bag.errors import BagError
-from biped_bringup.cli import bag, check, learn, up, walk
 from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.exit_status import INTERRUPTED, WRONG_INPUT
+from biped_bringup.cli.verbs import add_verbs
 from learner_node.checkpoint import CheckpointError
 from msgs_json.settings import SettingsError
 from trajectory_node.errors import TrajectoryError
 
-WRONG_INPUT = 2
-INTERRUPTED = 130
+VERBS = ("learn", "walk", "up", "bag", "check")
 
 
-def parser() -> argparse.ArgumentParser:
-    """Return the parser of all verbs."""
+def parser(words: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """Return the parser for a command line; without words that of all verbs."""
     top = argparse.ArgumentParser(
         prog="biped",
         description="A simulated biped learns the waist trajectory of dynamic walking "
@@ -33,14 +33,13 @@ def parser() -> argparse.ArgumentParser:
         epilog="exit status: 0 done, 1 not achieved, 2 wrong input, 130 interrupted",
     )
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for verb in (learn, walk, up, bag, check):
-        verb.add_parser(verbs)
+    add_verbs(verbs, "biped_bringup.cli.", VERBS, words)
     return top
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status."""
-    commands = parser()
+    commands = parser(sys.argv[1:] if arguments is None else arguments)
     argcomplete.autocomplete(commands)
     options = commands.parse_args(arguments)
     try:

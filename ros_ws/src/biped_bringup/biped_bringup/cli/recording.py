@@ -11,9 +11,9 @@ from typing import Any
 
 from biped_bringup.bag.errors import BagError
 from biped_bringup.bag.metadata import read_metadata
+from biped_bringup.bag.records import LOST_KEY, STATE_KEY
 from biped_bringup.bag.writer import holds_bag
 from biped_bringup.cli.errors import CommandError
-from biped_bringup.recorder.node import LOST_KEY, STATE_KEY
 from biped_bringup.recorder.settings import RecorderSettings
 from biped_bringup.supervisor.supervisor import RECORDER, Supervisor
 from msgs_json.ros.parameters import flattened

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
 from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.exit_status import NODE_FAILURE
 from biped_bringup.cli.learn import MEMORY_FILE
 from biped_bringup.cli.options import (
     add_settings_options,
@@ -46,14 +48,13 @@ from biped_bringup.training import TrainingRun
 from msgs_json.end_cause import EndCause
 from trajectory_node.waist_reference import WaistReference
 
-NODE_FAILURE = 3
 # On a busy machine a peer can be too late in real time, which is not the walk's fault.
 _ATTEMPTS = 5
 _DEFAULT_OUT = Path("bags/up")
 _ALL_NODES = ",".join(name.removesuffix("_node") for name in START_ORDER)
 
 
-def add_parser(verbs: Any) -> None:
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
     parser: argparse.ArgumentParser = verbs.add_parser(
         "up",

@@ -5,11 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from biped_bringup.cli.learn import INTERRUPTED
+from biped_bringup.cli.exit_status import DONE, INTERRUPTED, NOT_ACHIEVED
 from biped_bringup.supervisor.supervisor import Supervisor
 from msgs_json.timing import seconds
-
-DONE, NOT_ACHIEVED = 0, 1
 
 
 def report(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 import yaml
 
 from biped_bringup.cli.errors import CommandError
+from biped_bringup.cli.exit_status import DONE, NOT_ACHIEVED
 from biped_bringup.cli.options import (
     add_json_option,
     add_settings_options,
@@ -27,7 +29,7 @@ from msgs_json.episode_result import EpisodeResult
 from msgs_json.timing import seconds
 
 
-def add_parser(verbs: Any) -> None:
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
     parser: argparse.ArgumentParser = verbs.add_parser(
         "walk",
@@ -76,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
         _print(result, sha256)
         if options.figure is not None:
             print(f"picture of the ZMP   {options.figure}")
-    return 0 if result.completed else 1
+    return DONE if result.completed else NOT_ACHIEVED
 
 
 def _yaml_number(value: float) -> str:

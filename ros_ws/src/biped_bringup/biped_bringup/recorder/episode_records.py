@@ -19,7 +19,6 @@ from msgs_json.learner_status import LearnerStatus
 from msgs_json.ros.cdr import string_text
 from msgs_json.wire import MalformedMessageError, decode
 
-EPISODE_RECORD = "biped.episode"
 _STATUSES_KEPT = 32
 
 

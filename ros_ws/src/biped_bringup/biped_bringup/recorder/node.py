@@ -27,10 +27,17 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from biped_bringup.bag.errors import BagError
 from biped_bringup.bag.recording import Recording
+from biped_bringup.bag.records import (
+    COUNTS_RECORD,
+    EPISODE_RECORD,
+    LOST_KEY,
+    RUN_RECORD,
+    STATE_KEY,
+)
 from biped_bringup.bag.writer import BagWriter, RecordedMessage, fresh_folder
-from biped_bringup.recorder.episode_records import EPISODE_RECORD, EpisodeRecords
+from biped_bringup.recorder.episode_records import EpisodeRecords
 from biped_bringup.recorder.intake import IncomingTopic, Intake
-from biped_bringup.recorder.report import COUNTS_RECORD, counts_record, counts_table
+from biped_bringup.recorder.report import counts_record, counts_table
 from biped_bringup.recorder.selection import selection_of
 from biped_bringup.recorder.settings import RecorderSettings
 from msgs_json import topics
@@ -40,9 +47,6 @@ from msgs_json.settings import SettingsError
 from msgs_json.topics import Topic
 
 NAME = "recorder_node"
-RUN_RECORD = "biped.run"
-# In metadata.yaml; a bag without them was not ended in order.
-STATE_KEY, LOST_KEY = "biped.recording", "biped.lost"
 _TURN_S = 0.02
 _LOOK_PERIOD_S = 0.1
 # Long enough for the reason to get around before the node ends.

@@ -8,8 +8,6 @@ from collections.abc import Iterable
 from biped_bringup.bag.writer import BagWriter
 from biped_bringup.recorder.intake import IncomingTopic
 
-COUNTS_RECORD = "biped.counts"
-
 
 def counts(topic: IncomingTopic, bag: BagWriter) -> dict[str, int]:
     """Return the counts of one topic.

@@ -19,11 +19,11 @@ from collections.abc import Sequence
 from types import ModuleType
 from typing import Any
 
+from biped_bringup.cli.exit_status import INTERRUPTED
 from biped_bringup.ros2 import real_ros2
 from biped_bringup.ros2.environment import prepare_environment
 
 FAILED = 1
-INTERRUPTED = 130
 TERMINATED = 143
 
 COMMANDS = {

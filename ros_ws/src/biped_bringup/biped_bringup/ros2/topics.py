@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 from typing import Any
 
@@ -26,6 +27,15 @@ def topics_and_types(
         for name, types in sorted(node.get_topic_names_and_types())
         if include_hidden or not topic_or_service_is_hidden(name)
     ]
+
+
+def add_hidden_topics_argument(parser: argparse.ArgumentParser) -> None:
+    """Add --include-hidden-topics."""
+    parser.add_argument(
+        "--include-hidden-topics",
+        action="store_true",
+        help="consider hidden topics as well",
+    )
 
 
 def full_name(node: Node, topic: str) -> str:

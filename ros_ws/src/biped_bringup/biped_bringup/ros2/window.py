@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-_NS_PER_S = 1e9
+from msgs_json.timing import NS_PER_S
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class Spread:
     def line(self) -> str:
         """Return the second line of what `hz` and `delay` print."""
         return (
-            f"\tmin: {self.least / _NS_PER_S:.3f}s max: {self.most / _NS_PER_S:.3f}s "
-            f"std dev: {self.deviation / _NS_PER_S:.5f}s window: {self.count}"
+            f"\tmin: {self.least / NS_PER_S:.3f}s max: {self.most / NS_PER_S:.3f}s "
+            f"std dev: {self.deviation / NS_PER_S:.5f}s window: {self.count}"
         )
 
 
@@ -39,7 +39,7 @@ def spread(durations_ns: Iterable[int]) -> Spread:
 def rate_report(intervals_ns: Iterable[int]) -> str:
     """Return what `hz` prints for at least one interval between messages."""
     intervals = spread(intervals_ns)
-    rate = _NS_PER_S / intervals.mean if intervals.mean > 0.0 else 0.0
+    rate = NS_PER_S / intervals.mean if intervals.mean > 0.0 else 0.0
     return f"average rate: {rate:.3f}\n{intervals.line()}"
 
 
@@ -71,7 +71,7 @@ class RateWindow:
             return None
         self._intervals_ns.append(now_ns - self._last_ns)
         self._last_ns = now_ns
-        if now_ns < self._reported_ns + _NS_PER_S:
+        if now_ns < self._reported_ns + NS_PER_S:
             return None
         self._reported_ns = now_ns
         return rate_report(self._intervals_ns)
@@ -108,7 +108,7 @@ class DelayWindow:
             return "no new messages"
         self._new = False
         delays = spread(self._delays_ns)
-        return f"average delay: {delays.mean / _NS_PER_S:.3f}\n{delays.line()}"
+        return f"average delay: {delays.mean / NS_PER_S:.3f}\n{delays.line()}"
 
 
 class BandwidthWindow:
@@ -135,7 +135,7 @@ class BandwidthWindow:
             self._arrivals.clear()
             return None
         sizes = [size for _, size in self._arrivals]
-        rate = sum(sizes) * _NS_PER_S / elapsed_ns
+        rate = sum(sizes) * NS_PER_S / elapsed_ns
         unit = _unit(rate)
         mean, least, most = (
             _in_unit(size, unit)

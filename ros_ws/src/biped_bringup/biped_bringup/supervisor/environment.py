@@ -9,6 +9,7 @@ from pathlib import Path
 # A private domain unless one is given: 0 is everybody's default, 101 the last that is
 # safe on every system.
 FIRST_PRIVATE_DOMAIN, LAST_PRIVATE_DOMAIN = 2, 101
+LAST_DOMAIN = 232  # beyond it, ports would be beyond 65,535
 LOCALHOST = "LOCALHOST"
 DISCOVERY_RANGES = (LOCALHOST, "SUBNET")
 # As Fast DDS 2, that of Jazzy, names it; the name with FASTDDS came with version 3.

@@ -8,6 +8,7 @@ import sys
 
 from biped_bringup.bag.playback import PlayRequest, play
 from biped_bringup.bag.reader import BagReader
+from biped_bringup.cli.exit_status import DONE, INTERRUPTED
 from biped_bringup.cli.signals import stop_requests
 from biped_bringup.ros2.arguments import positive_float
 from biped_bringup.ros2.bag_arguments import (
@@ -18,8 +19,6 @@ from biped_bringup.ros2.bag_arguments import (
 from biped_bringup.ros2.diagnosis.installation import discovery_range
 from biped_bringup.ros2.errors import VerbError
 from biped_bringup.supervisor.environment import node_environment
-
-_INTERRUPTED = 130
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -97,7 +96,7 @@ def main(args: argparse.Namespace) -> int:
         bag = BagReader(args.bag_path)
         os.environ.update(node_environment(domain, discovery_range()))
         play(bag, request, domain, lambda: bool(stops), _tell)
-    return _INTERRUPTED if stops else 0
+    return INTERRUPTED if stops else DONE
 
 
 def _tell(line: str) -> None:

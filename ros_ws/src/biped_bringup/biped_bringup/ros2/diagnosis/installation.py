@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, requires, version
 
 from biped_bringup.ros2.diagnosis.area import Area
+from biped_bringup.supervisor.environment import LAST_DOMAIN
 
 DISTRIBUTION = "jazzy"
 _OURS = "biped"
 _RANGES = ("SUBNET", "LOCALHOST", "OFF", "SYSTEM_DEFAULT")
 _LAST_SAFE_DOMAIN = 101
-_LAST_DOMAIN = 232
 
 
 def discovery_range(environment: Mapping[str, str] = os.environ) -> str:
@@ -93,9 +93,9 @@ def package_area() -> Area:
 
 def _check_domain(area: Area, text: str) -> None:
     area.item("domain id", text)
-    if not text.isdecimal() or int(text) > _LAST_DOMAIN:
+    if not text.isdecimal() or int(text) > LAST_DOMAIN:
         area.errors.append(
-            f"ROS_DOMAIN_ID is {text}, must be a number from 0 to {_LAST_DOMAIN}."
+            f"ROS_DOMAIN_ID is {text}, must be a number from 0 to {LAST_DOMAIN}."
         )
     elif int(text) > _LAST_SAFE_DOMAIN:
         area.warnings.append(
