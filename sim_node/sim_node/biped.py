@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -102,6 +102,14 @@ class SimulatedBiped:
         self.world.set_friction(settings.disturbances.friction)
         self.world.set_torque_limits(
             TORQUE_LIMIT * settings.disturbances.torque_limit_factor
+        )
+        sizes = settings.disturbances
+        self._noise_sizes = np.array(
+            [
+                [sizes.position_noise_m],
+                [sizes.zmp_noise_m],
+                [sizes.acceleration_noise_m_s2],
+            ]
         )
         self._limit_watch = LimitWatch(settings.limits, self.world.torque_limits)
         self._references = standing(start)
@@ -238,31 +246,12 @@ class SimulatedBiped:
         foot = segment.right_foot if planned[0] else segment.left_foot
         # Over the time since the last observation; the walk's last one is shorter.
         period_s = seconds(max(1, len(self._ticks)))
-        quantities = (
-            (waist, foot[row].tolist(), 1.0),
-            (watch.contact, references.zmp[row], 1.0),
-            (velocity, watch.waist_velocity, period_s),
-        )
-        watch.waist_velocity = velocity[:2]
-        sizes = self.settings.disturbances
         # Drawn also where its size is zero, so that a size changes no other draw.
-        noise = self._rng.standard_normal((3, 2)).tolist()
-        waist_in_support_foot, zmp_error, acceleration = (
-            _pair(
-                (value[0] - origin[0]) / unit + size * draw[0],
-                (value[1] - origin[1]) / unit + size * draw[1],
-            )
-            for (value, origin, unit), size, draw in zip(
-                quantities,
-                (
-                    sizes.position_noise_m,
-                    sizes.zmp_noise_m,
-                    sizes.acceleration_noise_m_s2,
-                ),
-                noise,
-                strict=True,
-            )
-        )
+        noise = (self._noise_sizes * self._rng.standard_normal((3, 2))).tolist()
+        waist_in_support_foot = _measured(waist, foot[row].tolist(), noise[0])
+        zmp_error = _measured(watch.contact, references.zmp[row], noise[1])
+        acceleration = _measured(velocity, watch.waist_velocity, noise[2], period_s)
+        watch.waist_velocity = velocity[:2]
         sums = sum_up(self._ticks, watch.trajectory)
         self._ticks.clear()
         return Observation(
@@ -425,6 +414,13 @@ class SimulatedBiped:
         return self._watch.control_tick - self._references.segment.first_tick
 
 
-def _pair(x: float, y: float) -> tuple[float, float]:
-    """Return two numbers; zeros where the physics gave none."""
+def _measured(
+    value: Sequence[float],
+    origin: Sequence[float],
+    noise: Sequence[float],
+    divisor: float = 1.0,
+) -> tuple[float, float]:
+    """Return (value - origin) / divisor + noise in x and y; zeros where that is NaN."""
+    x = (value[0] - origin[0]) / divisor + noise[0]
+    y = (value[1] - origin[1]) / divisor + noise[1]
     return (x, y) if math.isfinite(x + y) else (0.0, 0.0)

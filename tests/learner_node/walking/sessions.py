@@ -84,16 +84,6 @@ def with_mixed_walks(walks, trial_fails=True):
     return session
 
 
-SESSIONS = {
-    "new": new_session,
-    "after_failures": lambda: with_mixed_walks(3),
-    "trial_due": with_schedule_complete,
-    "trial_failed": lambda: with_mixed_walks(9),
-    "learned": learned_session,
-}
-EVERY_SESSION = pytest.mark.parametrize("made", SESSIONS.values(), ids=SESSIONS)
-
-
 def frozen_session():
     session = new_session()
     result_of(session)

@@ -8,10 +8,12 @@ from tests.learner_node.walking.sessions import (
     FALL,
     WALK_TICKS,
     copy_of,
+    learned_session,
     new_session,
     result_of,
     state_of,
     walk,
+    with_mixed_walks,
     with_schedule_complete,
 )
 from tests.learner_node.walking.small_settings import SETTINGS
@@ -20,6 +22,15 @@ from learner_node.walking.session import LearningSession
 from learner_node.walking.settings import (
     ActionSettings,
 )
+
+SESSIONS = {
+    "new": new_session,
+    "after_failures": lambda: with_mixed_walks(3),
+    "trial_due": with_schedule_complete,
+    "trial_failed": lambda: with_mixed_walks(9),
+    "learned": learned_session,
+}
+EVERY_SESSION = pytest.mark.parametrize("made", SESSIONS.values(), ids=SESSIONS)
 
 
 @EVERY_SESSION
