@@ -76,6 +76,7 @@ class Graph:
         run = run_record(
             settings,
             SEED,
+            preset="quick",
             pace="lockstep",
             frozen=False,
             max_episodes=max_episodes,
@@ -249,6 +250,7 @@ def test_the_run_s_data_are_in_every_file(run):
     found = records(run.bag, "biped.run")
     assert len(found) == len(read_metadata(run.bag).files)
     assert all(record["seed"] == str(SEED) for record in found)
+    assert all(record["preset"] == "quick" for record in found)
     assert all(record["begins_with"] == "nothing" for record in found)
 
 

@@ -138,7 +138,9 @@ def _summary_of_run(run: MetadataRecord) -> str:
     commit = values.get("git_commit", "")
     changed = ", with changes" if values.get("git_dirty") == "true" else ""
     git = f"commit {commit}{changed}" if commit else "not from a git checkout"
-    return f"seed {values.get('seed', 'unknown')}, {git}"
+    preset = values.get("preset", "")
+    of_preset = f", preset {preset}" if preset else ""
+    return f"seed {values.get('seed', 'unknown')}{of_preset}, {git}"
 
 
 def _episode_text(record: MetadataRecord) -> str:

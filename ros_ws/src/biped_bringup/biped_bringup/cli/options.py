@@ -52,9 +52,12 @@ def add_json_option(parser: argparse.ArgumentParser) -> None:
 
 def settings_of(options: argparse.Namespace) -> RunSettings:
     """Return the settings that the options describe."""
-    return load_settings(
-        options.preset or DEFAULT_PRESET, options.config, options.changes
-    )
+    return load_settings(preset_of(options), options.config, options.changes)
+
+
+def preset_of(options: argparse.Namespace) -> str:
+    """Return the name of the preset that the options choose."""
+    return options.preset or DEFAULT_PRESET
 
 
 def names_settings(options: argparse.Namespace) -> bool:

@@ -17,6 +17,7 @@ from biped_bringup.cli.options import (
     add_settings_options,
     names_settings,
     natural,
+    preset_of,
     settings_of,
     writable_folder,
 )
@@ -160,6 +161,7 @@ def run(options: argparse.Namespace) -> int:
         run_data = run_record(
             settings,
             seed,
+            preset=preset_of(options) if begun_with is None else "",
             pace=options.pace,
             frozen=options.greedy,
             max_episodes=max_episodes,

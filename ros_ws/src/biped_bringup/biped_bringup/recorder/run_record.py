@@ -35,6 +35,7 @@ def run_record(
     settings: RunSettings,
     seed: int,
     *,
+    preset: str,
     pace: str,
     frozen: bool,
     max_episodes: int,
@@ -45,6 +46,7 @@ def run_record(
     Args:
         settings: of the run.
         seed: of every random draw.
+        preset: that the settings were laid over; empty if they are the memory's.
         pace: lockstep or realtime.
         frozen: walks are greedy, nothing is learned.
         max_episodes: after which it ends; 0: when learned.
@@ -53,6 +55,7 @@ def run_record(
     return {
         "start": datetime.now(timezone.utc).isoformat(timespec="milliseconds"),
         "seed": str(seed),
+        "preset": preset,
         "settings": yaml.safe_dump(to_mapping(settings), sort_keys=False),
         "begins_with": FROM_NOTHING if memory_file is None else memory_file.name,
         "frozen": "true" if frozen else "false",
