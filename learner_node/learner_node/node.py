@@ -12,7 +12,6 @@ import json
 import os
 import sys
 import time
-import uuid
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +33,7 @@ from msgs_json.refusal import RefusedMessageError
 from msgs_json.ros.cdr import string_message, string_text
 from msgs_json.ros.guarded import GuardedNode
 from msgs_json.ros.messages import correction_template
+from msgs_json.ros.process import process_name
 from msgs_json.ros.running import run_node
 from msgs_json.wire import decode, encode
 
@@ -57,7 +57,7 @@ class LearnerNode(GuardedNode):
         settings = self.settings_from_parameters(LearnerNodeSettings, self._on_settings)
         self._settings = settings
         # Names sort by the time of the start: of two learners, the first stays.
-        self.instance = f"learner-{time.time_ns()}-{uuid.uuid4().hex[:8]}"
+        self.instance = f"learner-{time.time_ns()}-{process_name()}"
         self.session = LearningSession(
             settings.learner, settings.walk_ticks, settings.seed
         )
@@ -110,8 +110,8 @@ class LearnerNode(GuardedNode):
         self._publish_status()
 
     def close(self) -> None:
-        """Save what was learned, if the session stands between two walks."""
-        if not self.session.walking:
+        """Save what was learned, unless a walk goes on or the node never took part."""
+        if self._corrections is not None and not self.session.walking:
             self.save()
 
     def save(self) -> str | None:

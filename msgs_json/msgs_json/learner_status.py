@@ -18,7 +18,8 @@ class LearnerStatus(
     """State of the schedule and of the memory between two episodes."""
 
     instance: str
-    """Name of the running learner; there must be one on a graph."""
+    """When the learner started [ns], on which host and as which process; there must be
+    one on a graph."""
     active: bool
     """Takes part; before, it listens whether another one does."""
     seed: Count

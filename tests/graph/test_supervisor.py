@@ -12,6 +12,7 @@ import pytest
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.supervisor.environment import node_environment
+from biped_bringup.supervisor.restart_budget import RestartBudget
 from biped_bringup.supervisor.supervisor import (
     NodeFailureError,
     Patience,
@@ -146,12 +147,31 @@ def test_a_second_learner_is_refused(graph, processes, tmp_path):
 
 
 def test_a_node_that_keeps_dying_ends_the_run(tmp_path, domain):
+    graph = Graph(tmp_path, domain)
+    child = graph.supervisor.children["trajectory_node"]
+
+    def given_up_after_another_death():
+        child.signal(signal.SIGKILL)
+        return graph.failure is not None
+
+    try:
+        assert graph.wait_for(given_up_after_another_death)
+        assert "trajectory_node died too often" in str(graph.failure)
+        assert child.starts == RestartBudget().limit
+    finally:
+        graph.stop()
+
+
+def test_a_node_that_cannot_be_what_is_asked_for_is_not_started_again(tmp_path, domain):
     values = parameters(tmp_path)
     values["trajectory_node"]["gait.step_length_m"] = 0.45
     graph = Graph(tmp_path, domain, values)
     try:
         assert graph.wait_for(lambda: graph.failure is not None)
-        assert "trajectory_node died too often" in str(graph.failure)
+        assert "trajectory_node cannot start: the robot cannot walk this gait" in str(
+            graph.failure
+        )
+        assert graph.supervisor.children["trajectory_node"].starts == 1
     finally:
         graph.stop()
 

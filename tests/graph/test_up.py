@@ -111,7 +111,7 @@ def test_parts_of_a_graph_find_each_other_and_a_second_learner_fails(domain, tmp
     body, mind, second = (tmp_path / name for name in ("body", "mind", "second"))
     with (
         running(domain, body, "--nodes", "trajectory,sim") as of_body,
-        running(domain, mind, "--preset", "quick", "--nodes", "learner") as of_mind,
+        running(domain, mind, "--nodes", "learner") as of_mind,
     ):
         assert wait_for((mind / "memory.npz").exists)
         processes = node_processes(body) | node_processes(mind)
@@ -119,8 +119,10 @@ def test_parts_of_a_graph_find_each_other_and_a_second_learner_fails(domain, tmp
         for process in processes.values():
             assert "/dev/shm/fastrtps" not in Path(f"/proc/{process}/maps").read_text()
         refused = up(domain, second, "--nodes", "learner")
-        assert refused.returncode == 3
+        assert refused.returncode == 3, refused.stderr
         assert "is on this graph already" in refused.stderr
+        assert "failed: learner_node gives up" in refused.stdout
+        assert not any(second.glob("*.npz"))
         assert of_body.poll() is of_mind.poll() is None
         of_body.send_signal(signal.SIGTERM)
         assert of_body.wait(TIMEOUT_S) == 130

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
@@ -22,6 +23,7 @@ from rclpy.publisher import Publisher
 from msgs_json import topics
 from msgs_json.refusal import RefusedMessageError
 from msgs_json.ros.parameters import changed_settings, declared_settings
+from msgs_json.ros.process import process_name
 from msgs_json.ros.qos import qos_profile
 from msgs_json.settings import SettingsError
 from msgs_json.topics import Topic
@@ -30,6 +32,8 @@ from msgs_json.wire import MalformedMessageError
 Settings = TypeVar("Settings")
 _DIAGNOSTICS_PERIOD_S = 1.0
 _LOOK_PERIOD_S = 0.05
+# Of all publishers together, since a subscriber may be dead or stopped.
+_ACKNOWLEDGED_S = 1.0
 
 
 class GuardedNode(Node):  # type: ignore[misc]
@@ -60,6 +64,17 @@ class GuardedNode(Node):  # type: ignore[misc]
 
     def close(self) -> None:
         """Let go of what is not ROS's; nodes override it."""
+
+    def await_acknowledgements(self) -> None:
+        """Wait a little until all that was published has arrived.
+
+        A publisher that ends takes with it what it would have to send again: of a fast
+        one, the last moments.
+        """
+        end = time.monotonic() + _ACKNOWLEDGED_S
+        for publisher in self.publishers:
+            left_s = max(0.0, end - time.monotonic())
+            publisher.wait_for_all_acked(Duration(seconds=left_s))
 
     # -- parameters ----------------------------------------------------------------
 
@@ -210,7 +225,7 @@ class GuardedNode(Node):  # type: ignore[misc]
         status = DiagnosticStatus(
             level=self._worst,
             name=self.get_name(),
-            hardware_id="simulation",
+            hardware_id=process_name(),
             message="; ".join(self._remarks.values()) or "running",
         )
         counts = {key: str(number) for key, number in self.counts.items()}

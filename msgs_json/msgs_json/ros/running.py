@@ -72,5 +72,6 @@ def run_node(
     finally:
         if node is not None:
             node.close()
+            node.await_acknowledgements()
             node.destroy_node()
         rclpy.try_shutdown()

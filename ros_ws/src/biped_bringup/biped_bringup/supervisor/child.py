@@ -66,8 +66,12 @@ class Child:
         """How the last process ended: its status, or minus the signal."""
         return None if self._process is None else self._process.poll()
 
-    def start(self) -> None:
-        """Start the process, in a session of its own: Ctrl-C is the supervisor's."""
+    def start(self) -> int:
+        """Start the process, in a session of its own, since Ctrl-C is the supervisor's.
+
+        Returns:
+            Its process id.
+        """
         self.starts += 1
         self._process = subprocess.Popen(
             self._command,
@@ -85,6 +89,7 @@ class Child:
             target=self._read, args=(self._process.stdout,), daemon=True
         )
         self._reader.start()
+        return self._process.pid
 
     def signal(self, number: signal.Signals) -> None:
         """Send a signal, if there is a process to take it."""

@@ -19,7 +19,11 @@ NAME = "supervisor"
 
 
 class GraphWatch:
-    """A node that only listens."""
+    """A node that only listens.
+
+    Others may be on the graph under the same names. Of a node that is expected from a
+    process, only what comes from there is believed.
+    """
 
     def __init__(self, domain: int) -> None:
         """Join the domain."""
@@ -35,6 +39,7 @@ class GraphWatch:
         self.status: LearnerStatus | None = None
         self.result: EpisodeResult | None = None
         self.results = 0
+        self._expected: dict[str, str] = {}
         self.heard_at: dict[str, float] = {}
         """When each node's diagnostics last came, by name."""
         self.remarks: dict[str, str] = {}
@@ -53,11 +58,12 @@ class GraphWatch:
             self._executor.spin_once(timeout_sec=left)
 
     def has_node(self, name: str) -> bool:
-        """Return whether a node is on the graph and has spoken since `forget`."""
+        """Return whether a node is on the graph and has spoken since `expect`."""
         return name in self._node.get_node_names() and name in self.heard_at
 
-    def forget(self, name: str) -> None:
-        """Forget that a node was heard, before it is started anew."""
+    def expect(self, name: str, process: str) -> None:
+        """Expect a node, started now, from a process; forget that it was heard."""
+        self._expected[name] = process
         self.heard_at.pop(name, None)
 
     def close(self) -> None:
@@ -68,19 +74,27 @@ class GraphWatch:
 
     def _on_status(self, message: String) -> None:
         try:
-            self.status = decode(LearnerStatus, message.data)
-        except MalformedMessageError as error:
-            self._node.get_logger().warning(str(error))
-
-    def _on_episode(self, message: String) -> None:
-        try:
-            self.result = decode(EpisodeResult, message.data)
+            status = decode(LearnerStatus, message.data)
         except MalformedMessageError as error:
             self._node.get_logger().warning(str(error))
         else:
-            self.results += 1
+            if status.instance.endswith(self._expected.get(topics.LEARNER_NODE, "")):
+                self.status = status
+
+    def _on_episode(self, message: String) -> None:
+        try:
+            result = decode(EpisodeResult, message.data)
+        except MalformedMessageError as error:
+            self._node.get_logger().warning(str(error))
+        else:
+            # Before the learner takes part, another one may have ended this walk.
+            if self.status is not None and self.status.active:
+                self.result = result
+                self.results += 1
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            self.heard_at[status.name] = time.monotonic()
-            self.remarks[status.name] = status.message
+            process = self._expected.get(status.name, status.hardware_id)
+            if status.hardware_id == process:
+                self.heard_at[status.name] = time.monotonic()
+                self.remarks[status.name] = status.message

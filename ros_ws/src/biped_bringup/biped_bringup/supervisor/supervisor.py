@@ -4,8 +4,10 @@ What failures do:
     a node dies: it is started again after a growing pause; the fifth time within ten
         seconds, or in a row without having come up, everything is ended, and the exit
         status says so.
-    the recorder says that it cannot go on (disk full, folder unusable), or keeps dying:
-        the recording has stopped, the walk goes on; `done_without` says why.
+    a node says that it cannot go on (wrong parameter, another learner on the graph):
+        everything is ended at once, since a new start would come to the same.
+    the recorder says so (disk full, folder unusable), or keeps dying: the recording has
+        stopped, the walk goes on; `done_without` says why.
     a node lives but has said nothing for a while: it is killed, and counts as died.
     SIGINT, SIGTERM: the nodes are asked to end, last started first; who does not, is
         terminated and then killed.
@@ -26,6 +28,7 @@ import yaml
 from biped_bringup.supervisor.child import Child
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
+from msgs_json.ros.process import process_name
 from msgs_json.ros.running import REFUSED, WRONG_INPUT
 
 RECORDER = "recorder_node"
@@ -133,8 +136,7 @@ class Supervisor:
         self.graph.close()
 
     def _start(self, child: Child, stopped: Callable[[], bool]) -> None:
-        self.graph.forget(child.name)
-        child.start()
+        self.graph.expect(child.name, process_name(child.start()))
         end = time.monotonic() + self._patience.ready_s
         while not self.graph.has_node(child.name):
             self.graph.spin(_TURN_S)
@@ -171,9 +173,9 @@ class Supervisor:
 
     def _restart(self, child: Child, stopped: Callable[[], bool]) -> None:
         status = child.exit_status
-        if child.name == RECORDER and status in (REFUSED, WRONG_INPUT):
+        if status in (REFUSED, WRONG_INPUT):
             child.wait(self._patience.end_s)  # until all that it said has been read
-            self._give_up(child, child.last_line)
+            self._give_up(child, child.last_line.removeprefix(f"{child.name} "))
             return
         delay_s = self._budgets[child.name].failed(time.monotonic())
         if delay_s is None:

@@ -1,0 +1,123 @@
+"""A supervisor believes its own nodes, whoever else is on the graph."""
+
+import time
+
+import pytest
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from msgspec.structs import replace
+from std_msgs.msg import String
+from tests.payloads import RESULT, STATUS
+
+from biped_bringup.supervisor.graph_watch import GraphWatch
+from msgs_json import topics
+from msgs_json.ros.qos import qos_profile
+from msgs_json.wire import encode
+
+OWN, OTHER = "host:12", "host:13"
+TIMEOUT_S = 20.0
+# Long enough for a message that will be heard to be heard.
+SPOKEN_S = 0.5
+
+
+class Speaker:
+    """Says what learners would say."""
+
+    def __init__(self, node):
+        self.publishers = [
+            node.create_publisher(kind, topic.name, qos_profile(topic))
+            for topic, kind in (
+                (topics.LEARNER_STATUS, String),
+                (topics.EPISODE, String),
+                (topics.DIAGNOSTICS, DiagnosticArray),
+            )
+        ]
+        self._status, self._episode, self._diagnostics = self.publishers
+
+    def status(self, process, **changes):
+        status = replace(STATUS, instance=f"learner-1-{process}", **changes)
+        self._status.publish(String(data=encode(status)))
+
+    def episode(self, number):
+        result = replace(RESULT, episode=number)
+        self._episode.publish(String(data=encode(result)))
+
+    def diagnostics(self, process):
+        status = DiagnosticStatus(name=topics.LEARNER_NODE, hardware_id=process)
+        self._diagnostics.publish(DiagnosticArray(status=[status]))
+
+
+@pytest.fixture
+def watch(domain):
+    watch = GraphWatch(domain)
+    yield watch
+    watch.close()
+
+
+@pytest.fixture
+def speaker(domain, watch):
+    """Return a speaker whom the watch hears, of a learner that is not expected."""
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=domain)
+    node = rclpy.create_node(topics.LEARNER_NODE, context=context)
+    speaker = Speaker(node)
+    assert hears(
+        watch, lambda: all(p.get_subscription_count() for p in speaker.publishers)
+    )
+    speaker.status(OTHER)
+    speaker.diagnostics(OTHER)
+    assert hears(watch, lambda: watch.status and watch.has_node(topics.LEARNER_NODE))
+    yield speaker
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+
+
+def hears(watch, condition):
+    """Return whether the condition came true in time."""
+    end = time.monotonic() + TIMEOUT_S
+    while not condition() and time.monotonic() < end:
+        watch.spin(0.05)
+    return condition()
+
+
+def test_a_learner_elsewhere_is_believed_where_none_is_started_here(watch, speaker):
+    speaker.episode(7)
+    assert hears(watch, lambda: watch.results == 1)
+    assert watch.result.episode == 7
+
+
+def test_a_learner_that_was_expected_from_here_is_not_ready_when_another_is(
+    watch, speaker
+):
+    watch.expect(topics.LEARNER_NODE, OWN)
+    speaker.diagnostics(OTHER)
+    watch.spin(SPOKEN_S)
+    assert not watch.has_node(topics.LEARNER_NODE)
+    speaker.diagnostics(OWN)
+    assert hears(watch, lambda: watch.has_node(topics.LEARNER_NODE))
+
+
+def test_what_another_learner_has_learned_is_not_this_ones(watch, speaker):
+    watch.status = None
+    watch.expect(topics.LEARNER_NODE, OWN)
+    speaker.status(OTHER, learned=True)
+    watch.spin(SPOKEN_S)
+    assert watch.status is None
+    speaker.status(OWN)
+    assert hears(watch, lambda: watch.status is not None)
+    assert not watch.status.learned
+
+
+def test_a_walk_that_ends_before_the_own_learner_takes_part_is_anothers(watch, speaker):
+    watch.status = None
+    watch.expect(topics.LEARNER_NODE, OWN)
+    speaker.status(OWN, active=False)
+    assert hears(watch, lambda: watch.status is not None)
+    speaker.episode(1)
+    watch.spin(SPOKEN_S)
+    assert watch.results == 0
+    speaker.status(OWN, active=True)
+    assert hears(watch, lambda: watch.status.active)
+    speaker.episode(2)
+    assert hears(watch, lambda: watch.results == 1)
+    assert watch.result.episode == 2
