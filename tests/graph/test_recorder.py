@@ -39,6 +39,8 @@ from msgs_json.wire import decode
 SEED = 5
 EPISODES = 3
 TIMEOUT_S = 90.0
+# Of messages; a new file has a few kB of definitions.
+LITTLE_BYTES = 100_000
 # All topics but the one on which the recorder itself speaks.
 OF_THE_WALK = [
     topic
@@ -268,8 +270,10 @@ def hard_run(tmp_path_factory):
         os.kill(recorder.pid, signal.SIGKILL)
         killed_ns = time.time_ns()
         graph.wait_for(lambda: recorder.starts == 2)
-        graph.walk_on(2)
-        limit = 400_000
+        second = graph.bag.with_name("bag_2") / "bag_2_0.mcap"
+        graph.wait_for(lambda: second.exists() and second.stat().st_size > LITTLE_BYTES)
+        time.sleep(1.0)  # many times as long as until it is flushed
+        limit = second.stat().st_size
         resource.prlimit(recorder.pid, resource.RLIMIT_FSIZE, (limit, limit))
         graph.wait_for(lambda: RECORDER in graph.supervisor.done_without)
         graph.walk_on(2)
