@@ -74,6 +74,11 @@ def solve(segment: WaistSegment, rows: int) -> tuple[JointReferences, int]:
 
 
 def _phases(segment: WaistSegment, rows: int) -> list[PlannedPhase]:
-    flags = segment.right_support, segment.double_support, segment.step_index
-    columns = (column[:rows].tolist() for column in flags)
-    return list(zip(*columns, strict=True))
+    return list(
+        zip(
+            segment.right_support[:rows].tolist(),
+            segment.double_support[:rows].tolist(),
+            segment.step_index[:rows].tolist(),
+            strict=True,
+        )
+    )

@@ -58,15 +58,21 @@ class LimitWatch:
         limits = self._limits
         loaded = contact.left_load_n + contact.right_load_n > 0.0
         counts.unloaded = 0 if loaded else counts.unloaded + 1
-        counts.saturated = counts.saturated + 1 if self._saturated(torque) else 0
-        # A sum is finite only if all of its terms are.
-        if not math.isfinite(zmp_error_m + sum(position) + sum(velocity) + sum(torque)):
+        # A norm is finite only if all joints' values are, and none of them is larger:
+        # mostly it settles what would else be asked of each.
+        speed, effort = math.hypot(*velocity), math.hypot(*torque)
+        saturated = effort >= self._lowest_mark and self._saturated(torque)
+        counts.saturated = counts.saturated + 1 if saturated else 0
+        if not math.isfinite(zmp_error_m + math.hypot(*position) + speed + effort):
             return EndCause.PHYSICS_NAN
         if contact.penetration_m > limits.foot_penetration_m:
             return EndCause.FOOT_THROUGH_FLOOR
         if zmp_error_m >= limits.zmp_error_m:
             return EndCause.ZMP_ERROR
-        if max(max(velocity), -min(velocity)) >= limits.joint_velocity_rad_s:
+        if (
+            speed >= limits.joint_velocity_rad_s
+            and max(map(abs, velocity)) >= limits.joint_velocity_rad_s
+        ):
             return EndCause.JOINT_VELOCITY
         if counts.saturated >= self._saturated_ticks:
             return EndCause.TORQUE_SATURATION
@@ -75,9 +81,6 @@ class LimitWatch:
         return None
 
     def _saturated(self, torque: tuple[float, ...]) -> bool:
-        mark = self._lowest_mark  # most ticks stay below it, and are done sooner
-        if max(torque) < mark and min(torque) > -mark:
-            return False
         return any(map(operator.ge, map(abs, torque), self._torque_marks))
 
 
