@@ -16,8 +16,9 @@ from rclpy.qos import (
 from biped_bringup.bag.errors import BagError
 from biped_bringup.bag.reader import BagTopic
 
-# The graph does not tell how much history a publisher keeps.
-_DEPTH = 1000
+# The graph does not tell how much history a publisher keeps. Much of it here, for
+# the player waits for acknowledgements whenever half of it is on its way.
+_DEPTH = 5000
 _LATCHED_DEPTH = 1
 # rosbag2 has written both words and rmw's numbers.
 _RELIABLE = ("reliable", "1", 1)
