@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 from scipy.spatial import ConvexHull
 from tests.graph.clients import Client, quick
+from tests.graph.domains import MODULE, own_domain
 from visualization_msgs.msg import Marker, MarkerArray
 
 from biped_bringup.one_executor import OneExecutor
@@ -86,7 +87,7 @@ def seen():
     """Everything that two walks and a bit of a third publish to be looked at."""
     watched = (topics.MARKERS, topics.TORSO_POSE, topics.ZMP, topics.ZMP_REFERENCE)
     with (
-        OneExecutor(quick(), 37) as graph,
+        OneExecutor(quick(), own_domain(MODULE)) as graph,
         Client(graph, *watched, topics.EPISODE) as client,
     ):
         # As long as a walk must last for both kinds of support to be seen.

@@ -15,6 +15,7 @@ from rcl_interfaces.srv import (
 )
 from rclpy.parameter import Parameter
 from tests.graph.clients import TIMEOUT_S, Client, hashes, learned_in_process, quick
+from tests.graph.domains import MODULE, own_domain
 
 from biped_bringup.one_executor import OneExecutor
 from learner_node.node import LearnerNode
@@ -45,7 +46,7 @@ LIVE = {
 @pytest.fixture(scope="module")
 def standing():
     """A graph on which nobody walks, since the learner still listens."""
-    with OneExecutor(quick(listen_s=60.0), 38) as graph, Client(graph) as client:
+    with OneExecutor(quick(listen_s=60.0), own_domain(MODULE)) as graph, Client(graph) as client:
         yield client
 
 

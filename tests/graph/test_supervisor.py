@@ -54,6 +54,10 @@ class Graph:
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
+    def __repr__(self):
+        """Return what was said last, for failures of tests."""
+        return "\n".join(self.lines[-30:])
+
     def _run(self):
         try:
             self.supervisor.run(lambda: False, self._stopped.is_set)
