@@ -46,7 +46,10 @@ LIVE = {
 @pytest.fixture(scope="module")
 def standing():
     """A graph on which nobody walks, since the learner still listens."""
-    with OneExecutor(quick(listen_s=60.0), own_domain(MODULE)) as graph, Client(graph) as client:
+    with (
+        OneExecutor(quick(listen_s=60.0), own_domain(MODULE)) as graph,
+        Client(graph) as client,
+    ):
         yield client
 
 

@@ -91,6 +91,8 @@ class OneExecutor:
         trace: TracebackType | None,
     ) -> None:
         """Close the nodes and leave the domain."""
+        # What an executor still knows of is not taken off the graph.
+        self._executor.shutdown()
         for node in self.nodes:
             node.close()
             node.destroy_node()
