@@ -13,13 +13,9 @@ from collections.abc import Sequence
 
 import argcomplete
 
-from biped_bringup.bag.errors import BagError
-from biped_bringup.cli.errors import CommandError
 from biped_bringup.cli.exit_status import INTERRUPTED, WRONG_INPUT
+from biped_bringup.cli.signals import loading
 from biped_bringup.cli.verbs import add_verbs
-from learner_node.checkpoint import CheckpointError
-from msgs_json.settings import SettingsError
-from trajectory_node.errors import TrajectoryError
 
 VERBS = ("learn", "walk", "up", "bag", "check")
 
@@ -39,7 +35,13 @@ def parser(words: Sequence[str] = ()) -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status."""
-    commands = parser(sys.argv[1:] if arguments is None else arguments)
+    with loading():
+        commands = parser(sys.argv[1:] if arguments is None else arguments)
+        from biped_bringup.bag.errors import BagError
+        from biped_bringup.cli.errors import CommandError
+        from learner_node.checkpoint import CheckpointError
+        from msgs_json.settings import SettingsError
+        from trajectory_node.errors import TrajectoryError
     argcomplete.autocomplete(commands)
     options = commands.parse_args(arguments)
     try:

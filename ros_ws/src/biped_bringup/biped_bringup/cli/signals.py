@@ -1,4 +1,4 @@
-"""Requests to stop, collected instead of obeyed at once."""
+"""Requests to stop: obeyed at once while a program loads, collected while it works."""
 
 from __future__ import annotations
 
@@ -6,6 +6,23 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
+
+
+@contextmanager
+def loading() -> Iterator[None]:
+    """Have SIGINT end the process itself while modules are imported.
+
+    Python makes an exception of it. Libraries that are interrupted while they load have
+    swallowed it, so that the program went on, or made an ImportError of it.
+    """
+    raised = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if raised:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        yield
+    finally:
+        if raised:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @contextmanager

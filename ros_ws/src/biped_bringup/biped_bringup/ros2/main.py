@@ -20,6 +20,7 @@ from types import ModuleType
 from typing import Any
 
 from biped_bringup.cli.exit_status import INTERRUPTED
+from biped_bringup.cli.signals import loading
 from biped_bringup.ros2 import real_ros2
 from biped_bringup.ros2.environment import prepare_environment
 
@@ -49,7 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare_environment()
     completing = "_ARGCOMPLETE" in os.environ
     words = _words_to_complete() if completing else arguments
-    parser = make_parser(words)
+    with loading():
+        parser = make_parser(words)
     if completing:
         import argcomplete
 
