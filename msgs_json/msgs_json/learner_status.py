@@ -18,8 +18,7 @@ class LearnerStatus(
     """State of the schedule and of the memory between two episodes."""
 
     instance: str
-    """When the learner started [ns], on which host and as which process; there must be
-    one on a graph."""
+    """learner-START_NS-HOST:PROCESS of the one learner of the graph."""
     active: bool
     """Takes part; before, it listens whether another one does."""
     seed: Count

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
+from tests.payloads import RESULT
 
 from learner_node.walking.episode_log import EpisodeLog
 from msgs_json.end_cause import EndCause
@@ -28,20 +30,15 @@ def result(
     cost: CostTerms | None = COST,
     reward: float = 10_000.0,
 ) -> EpisodeResult:
-    return EpisodeResult(
+    return replace(
+        RESULT,
         episode=1,
-        learning=True,
         end_cause=end_cause,
         control_ticks=control_ticks,
         target_ticks=target_ticks,
-        peak_zmp_error_m=0.03,
-        peak_joint_velocity_rad_s=1.5,
         cost=cost,
         t_err_estimate=None,
         reward=reward,
-        subtask=0,
-        trajectory_sha256="",
-        schedule_complete=False,
     )
 
 
