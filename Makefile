@@ -1,51 +1,62 @@
-# Everything runs in .venv, which `make install` builds from requirements-dev.lock.
+# Everything runs in .venv. What goes into it stands in requirements/, with hashes:
+#   run.lock        what the robot, the learner and the graph need
+#   dev.lock        the same, and what tests, lint and colcon need
+#   build.lock      what builds sdists and the project itself, in environments of its own
+#   installer.lock  uv, which installs the others
 
 BIN := .venv/bin
-READY := .venv/.installed
+READY := .venv/.ready-to-run
+DEV := .venv/.ready-to-test
 OUT := bags/quick
 
+export VIRTUAL_ENV := $(CURDIR)/.venv
+export UV_NO_CONFIG := 1
+UV := .venv/installer/bin/uv
+
 .DEFAULT_GOAL := help
-.PHONY: help install run test lint format bench colcon lock clean
+.PHONY: help install dev run test lint format bench colcon lock clean
 
 help:  ## list these targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
 
-install: $(READY)  ## create .venv with the locked packages and the biped itself
+install: $(READY)  ## create .venv with what `make run` needs, and the biped itself
+
+dev: $(DEV)  ## add what `make test` needs: pytest, mypy, colcon, Pinocchio and others
 
 run: $(READY)  ## learn a walk on ROS 2, walk it in real time, draw its ZMP
 	$(BIN)/biped up --preset quick --fresh --publish-every 10 --out $(OUT)
 	$(BIN)/biped up --greedy --pace realtime --out $(OUT)
 	$(BIN)/biped walk --memory $(OUT)/memory.npz --figure $(OUT)/zmp.png
 
-test: $(READY)  ## run the tests
+test: $(DEV)  ## run the tests
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
-lint: $(READY)  ## check style, types and the direction of imports
+lint: $(DEV)  ## check style, types and the direction of imports
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-format: $(READY)  ## sort imports and lay out the code
+format: $(DEV)  ## sort imports and lay out the code
 	$(BIN)/ruff check --select I --fix .
 	$(BIN)/ruff format .
 
-bench: $(READY)  ## time the simulation and the learner
+bench: $(DEV)  ## time the simulation and the learner
 	$(BIN)/python -m benchmarks
 
-colcon: $(READY)  ## build the ROS workspace into ros_ws/install
+colcon: $(DEV)  ## build the ROS workspace into ros_ws/install
 	cd ros_ws && $(CURDIR)/$(BIN)/colcon build
 
 # Versions already in a lock stay as they are; `make lock UPGRADE=-U` renews them all.
-# Local pip settings are shut out, so that nothing of this machine gets into a lock.
-COMPILE := CUSTOM_COMPILE_COMMAND="make lock" PIP_CONFIG_FILE=/dev/null PIP_FIND_LINKS= \
-	$(BIN)/pip-compile --quiet $(UPGRADE) --generate-hashes --allow-unsafe \
-	--strip-extras --no-emit-index-url --no-emit-find-links --no-emit-trusted-host
+COMPILE := UV_CUSTOM_COMPILE_COMMAND="make lock" $(UV) pip compile --quiet $(UPGRADE) \
+	--python-version 3.11 --generate-hashes
 
-lock: $(READY)  ## pin the dependencies of pyproject.toml, with hashes
-	$(COMPILE) --output-file requirements.lock pyproject.toml
-	$(COMPILE) --extra dev --constraint requirements.lock \
-		--output-file requirements-dev.lock pyproject.toml
+lock: $(UV)  ## pin the dependencies of pyproject.toml, with hashes
+	$(COMPILE) --output-file requirements/run.lock pyproject.toml
+	$(COMPILE) --extra dev --constraint requirements/run.lock \
+		--output-file requirements/dev.lock pyproject.toml
+	$(COMPILE) --output-file requirements/build.lock requirements/build.in
+	$(COMPILE) --output-file requirements/installer.lock requirements/installer.in
 
 clean:  ## remove .venv, caches and build products (recorded runs stay)
 	rm -rf .venv build dist install log ros_ws/build ros_ws/install ros_ws/log
@@ -57,15 +68,34 @@ $(BIN)/python:
 		if $$python -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' \
 			2>/dev/null; then exec $$python -m venv .venv; fi; \
 	done; \
-	echo 'biped: no Python 3.11 found, and the locked packages need it' >&2; exit 1
+	echo 'biped: no Python 3.11 found. PyBullet has no wheels for later ones; what' \
+		'else there is to do: README.md, "Other Pythons"' >&2; exit 1
 
 # Stamps: each is as new as what was last installed from its prerequisites.
+#
+# Nothing is resolved here: `uv pip sync` installs the very list of a lock, whatever the
+# index has got since. Settings of pip are not read, those of uv.toml are shut out, and
+# the hashes leave no choice to what the environment may say (UV_DEFAULT_INDEX names a
+# mirror).
 
-.venv/.locked: requirements-dev.lock | $(BIN)/python
-	@echo 'installing the locked packages into .venv'
-	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-dev.lock
+$(UV): requirements/installer.lock | $(BIN)/python
+	@$(BIN)/python -m pip install -qq --no-deps --require-hashes --only-binary :all: \
+		--upgrade --target .venv/installer -r $<
 	@touch $@
 
-.venv/.installed: pyproject.toml .venv/.locked
-	@$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
+SYNC = $(UV) pip sync --quiet --require-hashes \
+	--build-constraints requirements/build.lock
+# The project itself, from the checkout. A package that misses another one is an error.
+FINISH = $(UV) pip install --quiet --no-deps --build-constraints \
+	requirements/build.lock --editable . && $(UV) pip check --quiet
+
+$(READY): requirements/run.lock requirements/build.lock pyproject.toml $(UV)
+	@echo 'installing what is locked in $< into .venv'
+	@$(SYNC) $< && $(FINISH)
+	@rm -f $(DEV)
 	@touch $@
+
+$(DEV): requirements/dev.lock requirements/build.lock pyproject.toml $(UV)
+	@echo 'installing what is locked in $< into .venv'
+	@$(SYNC) $< && $(FINISH)
+	@touch $(READY) $@
