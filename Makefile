@@ -73,29 +73,27 @@ $(BIN)/python:
 
 # Stamps: each is as new as what was last installed from its prerequisites.
 #
-# Nothing is resolved here: `uv pip sync` installs the very list of a lock, whatever the
-# index has got since. Settings of pip are not read, those of uv.toml are shut out, and
-# the hashes leave no choice to what the environment may say (UV_DEFAULT_INDEX names a
-# mirror).
+# Nothing is resolved here: with --no-deps, the very list of a lock is installed, whatever
+# the index has got since. Settings of pip are not read, those of uv.toml are shut out,
+# and the hashes leave no choice to what the environment may say (UV_DEFAULT_INDEX names
+# a mirror). Not `uv pip sync`: it takes the egg-info in the wheels of ROS for packages
+# that are not in the lock, and removes them.
 
 $(UV): requirements/installer.lock | $(BIN)/python
 	@$(BIN)/python -m pip install -qq --no-deps --require-hashes --only-binary :all: \
 		--upgrade --target .venv/installer -r $<
 	@touch $@
 
-SYNC = $(UV) pip sync --quiet --require-hashes \
-	--build-constraints requirements/build.lock
+INSTALL = $(UV) pip install --quiet --no-deps --build-constraints requirements/build.lock
 # The project itself, from the checkout. A package that misses another one is an error.
-FINISH = $(UV) pip install --quiet --no-deps --build-constraints \
-	requirements/build.lock --editable . && $(UV) pip check --quiet
+FINISH = $(INSTALL) --editable . && $(UV) pip check --quiet
 
 $(READY): requirements/run.lock requirements/build.lock pyproject.toml $(UV)
 	@echo 'installing what is locked in $< into .venv'
-	@$(SYNC) $< && $(FINISH)
-	@rm -f $(DEV)
+	@$(INSTALL) --require-hashes -r $< && $(FINISH)
 	@touch $@
 
 $(DEV): requirements/dev.lock requirements/build.lock pyproject.toml $(UV)
 	@echo 'installing what is locked in $< into .venv'
-	@$(SYNC) $< && $(FINISH)
+	@$(INSTALL) --require-hashes -r $< && $(FINISH)
 	@touch $(READY) $@

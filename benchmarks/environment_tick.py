@@ -16,8 +16,8 @@ import pybullet
 from benchmarks.report import Figure
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import Walker
+from biped_common.settings import from_mapping
 from learner_node.walking.frozen import static_walk
-from msgs_json.settings import from_mapping
 from sim_node.control_tick import ControlTick
 
 _TURNS = 7

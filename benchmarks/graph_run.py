@@ -15,12 +15,12 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
 
-from biped_bringup.supervisor.environment import node_environment, private_domain
 from biped_bringup.supervisor.supervisor import Supervisor
+from biped_common.timing import CONTROL_PERIOD_US
+from biped_ros.environment import node_environment, private_domain
+from biped_ros.guarded import message_type
+from biped_ros.qos import qos_profile
 from msgs_json import topics
-from msgs_json.ros.guarded import message_type
-from msgs_json.ros.qos import qos_profile
-from msgs_json.timing import CONTROL_PERIOD_US
 
 _TIMEOUT_S = 300.0
 # A serialized message with a header begins with its stamp.

@@ -11,6 +11,7 @@ import signal
 import sys
 import time
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import rclpy
@@ -24,9 +25,10 @@ CAPACITY = 1_000_000
 _DEPTH = 1000
 
 
-def sent_times(file: Path, mode: str = "r") -> NDArray[np.int64]:
+def sent_times(file: Path, mode: Literal["r", "w+"] = "r") -> NDArray[np.int64]:
     """Return the (CAPACITY, topics) times of sending, shared with who publishes."""
-    return np.memmap(file, np.int64, mode, shape=(CAPACITY, len(TOPICS)))
+    shape = (CAPACITY, len(TOPICS))
+    return np.memmap(file, dtype=np.int64, mode=mode, shape=shape)
 
 
 def main(file: Path) -> None:

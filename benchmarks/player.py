@@ -36,7 +36,7 @@ _COPIES, _CONTROL_TICK_NS = 4, 2_000_000
 def measure() -> list[Figure]:
     """Return how late and how fast messages were played, and how many were lost."""
     # Before rclpy is loaded, here and in the subscriber.
-    from biped_bringup.supervisor.environment import node_environment
+    from biped_ros.environment import node_environment
 
     os.environ.update(node_environment(_DOMAIN, "LOCALHOST"))
     with tempfile.TemporaryDirectory() as folder:
@@ -78,8 +78,8 @@ def _write_walk(folder: Path) -> None:
 
     Each message of these is written four times, 2 ms apart.
     """
-    from biped_bringup.bag.reader import BagReader, offered_qos
-    from biped_bringup.bag.writer import BagWriter, RecordedMessage
+    from biped_bag.reader import BagReader, offered_qos
+    from biped_bag.writer import BagWriter, RecordedMessage
 
     sample = BagReader(_SAMPLE)
     writer = BagWriter(folder)
@@ -114,8 +114,8 @@ def _played(
 
     The CPU time is that of this process while it plays, with its middleware's threads.
     """
-    from biped_bringup.bag.playback import PlayRequest, play
-    from biped_bringup.bag.reader import BagReader
+    from biped_bag.playback import PlayRequest, play
+    from biped_bag.reader import BagReader
 
     bag = BagReader(folder)
     topics = [(topic.name, topic.type_name) for topic in bag.topics.values()]
@@ -146,8 +146,8 @@ def _listen(
     from rclpy.experimental import EventsExecutor
     from rclpy.task import Future
 
-    from msgs_json.ros.guarded import message_type
-    from msgs_json.ros.qos import qos_profile
+    from biped_ros.guarded import message_type
+    from biped_ros.qos import qos_profile
     from msgs_json.topics import Topic
 
     rclpy.init()

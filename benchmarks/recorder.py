@@ -15,12 +15,12 @@ from pathlib import Path
 from mcap.reader import make_reader
 
 from benchmarks.report import Figure
-from biped_bringup.bag.records import COUNTS_RECORD
+from biped_bag.records import COUNTS_RECORD
 from biped_bringup.cli.recording import recorder_parameters
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
-from biped_bringup.supervisor.environment import node_environment
 from biped_bringup.supervisor.supervisor import RECORDER, Supervisor
+from biped_ros.environment import node_environment
 
 _DOMAIN = 121
 _DURATION_S = 60.0

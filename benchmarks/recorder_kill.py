@@ -22,9 +22,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.numbered_publisher import TOPICS, sent_times
-from biped_bringup.bag.reader import BagReader
-from biped_bringup.bag.recover import recover
-from biped_bringup.supervisor.environment import node_environment, private_domain
+from biped_bag.reader import BagReader
+from biped_bag.recover import recover
+from biped_ros.environment import node_environment, private_domain
 
 BOUND_S = 0.2
 _START_TIMEOUT_S = 60.0
@@ -69,7 +69,7 @@ def publishing(folder: Path, domain: int) -> Iterator[Path]:
 def killed_recording(folder: Path, domain: int, sent: Path, after_s: float) -> Kill:
     """Record, kill the recorder some time after it began to write, and recover."""
     bag = folder / "bag"
-    command = [sys.executable, "-m", "biped_bringup.recorder.node", "--ros-args"]
+    command = [sys.executable, "-m", "biped_bag.recorder.node", "--ros-args"]
     command += ["-p", f"folder:={bag}", "-p", f"topics:={' '.join(TOPICS)}"]
     recorder = subprocess.Popen(
         command,

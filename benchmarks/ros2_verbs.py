@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterator
 
 from benchmarks.report import Figure
-from biped_bringup.supervisor.environment import node_environment, private_domain
+from biped_ros.environment import node_environment, private_domain
 
 _TOPIC = "/joint_states"
 _VERBS = (
@@ -82,7 +82,7 @@ def measure() -> Iterator[Figure]:
 def _wall_time_s(words: tuple[str, ...], environment: dict[str, str]) -> float:
     begin = time.monotonic()
     subprocess.run(
-        [sys.executable, "-m", "biped_bringup.ros2.main", *words],
+        [sys.executable, "-m", "ros2_verbs.main", *words],
         env=environment,
         stdout=subprocess.DEVNULL,
         check=True,
@@ -93,7 +93,7 @@ def _wall_time_s(words: tuple[str, ...], environment: dict[str, str]) -> float:
 def _hz(environment: dict[str, str]) -> tuple[float, float]:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.Popen(
-        [sys.executable, "-m", "biped_bringup.ros2.main", "topic", "hz", _TOPIC],
+        [sys.executable, "-m", "ros2_verbs.main", "topic", "hz", _TOPIC],
         env=environment,
         stdout=subprocess.PIPE,
         text=True,

@@ -123,7 +123,7 @@ def walk(workspace: Workspace) -> Iterator[Walk]:
     bag = workspace.home / "bag"
     # In a new workspace the nodes compile first; they must not give up on each other.
     parameters = {
-        "biped_bringup/recorder": f"folder:={bag}",
+        "biped_bag/recorder": f"folder:={bag}",
         "sim_node/sim_node": f"timeout_s:={PATIENCE_S}",
     }
     nodes = {

@@ -178,3 +178,9 @@ def test_this_environment_holds_what_is_locked() -> None:
         timeout=PATIENCE_S,
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_what_users_have_stays_when_developers_packages_come() -> None:
+    script = "import gymnasium, pybullet, pytest, rclpy, std_msgs.msg"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True)
+    assert done.returncode == 0, done.stderr

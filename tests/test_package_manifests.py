@@ -134,16 +134,26 @@ def executables() -> dict[str, str]:
     return project()["entry-points"]["biped.nodes"]
 
 
-def test_pip_and_colcon_offer_the_same_executables() -> None:
-    by_colcon = {
-        f"{folder.name}/{name.strip()}": target.strip()
-        for folder in FOLDERS
-        for script in setup_arguments(folder)
-        .get("entry_points", {})
-        .get("console_scripts", [])
-        for name, target in [script.split("=")]
-    }
-    assert by_colcon == executables()
+def test_pip_and_colcon_offer_the_same_executables_and_verbs() -> None:
+    by_colcon: dict[str, dict[str, str]] = {}
+    for folder in FOLDERS:
+        for group, lines in setup_arguments(folder).get("entry_points", {}).items():
+            for name, target in (line.split(" = ") for line in lines):
+                if group == "console_scripts":
+                    by_colcon.setdefault("biped.nodes", {})[f"{folder.name}/{name}"] = (
+                        target
+                    )
+                else:
+                    by_colcon.setdefault(group, {})[name] = target
+    assert by_colcon == project()["entry-points"]
+
+
+@pytest.mark.parametrize(
+    "group", [g for g in project()["entry-points"] if "verbs" in g]
+)
+def test_a_verb_is_offered_by_the_package_that_holds_it(group: str) -> None:
+    for name, target in project()["entry-points"][group].items():
+        assert callable(EntryPoint(name, target, group=group).load())
 
 
 @pytest.mark.parametrize("name", executables())

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from biped_bringup.run_settings import load_settings
-from msgs_json.settings import to_mapping
+from biped_common.settings import to_mapping
 
 TOP = Path(__file__).resolve().parents[1]
 MAP = TOP / "docs" / "paper-map.md"
@@ -15,6 +15,7 @@ FOLDERS = {
     "xol": TOP / "learner_node/learner_node/xol",
     "walking": TOP / "learner_node/learner_node/walking",
     "sim": TOP / "sim_node/sim_node",
+    "biped_common": TOP / "ros_ws/src/biped_common/biped_common",
     "biped_bringup": TOP / "ros_ws/src/biped_bringup/biped_bringup",
     "biped_description": TOP / "ros_ws/src/biped_description/biped_description",
     "biped_lab": TOP / "ros_ws/src/biped_lab/biped_lab",

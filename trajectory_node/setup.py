@@ -10,5 +10,9 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
-    entry_points={"console_scripts": ["trajectory_node = trajectory_node.node:main"]},
+    entry_points={
+        "console_scripts": [
+            "trajectory_node = trajectory_node.node:main",
+        ],
+    },
 )

@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from learner_node.atomic_file import atomic_file
+from biped_common.atomic_file import atomic_file
+from biped_common.errors import BipedError
 from learner_node.memory_hash import Arrays, arrays_sha256
 
 FORMAT = "biped checkpoint"
@@ -33,7 +34,7 @@ _DAMAGE = (
 )
 
 
-class CheckpointError(ValueError):
+class CheckpointError(BipedError, ValueError):
     """The file is no usable checkpoint; the message says why."""
 
 

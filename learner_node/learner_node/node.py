@@ -20,6 +20,12 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.publisher import Publisher
 from std_srvs.srv import SetBool, Trigger
 
+from biped_ros.cdr import string_message, string_text
+from biped_ros.guarded import GuardedNode
+from biped_ros.messages import correction_template
+from biped_ros.observation_gaps import ObservationGaps
+from biped_ros.process import process_name
+from biped_ros.running import run_node
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
@@ -28,14 +34,7 @@ from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
-from msgs_json.observation_gaps import ObservationGaps
-from msgs_json.refusal import RefusedMessageError
-from msgs_json.ros.cdr import string_message, string_text
-from msgs_json.ros.guarded import GuardedNode
-from msgs_json.ros.messages import correction_template
-from msgs_json.ros.process import process_name
-from msgs_json.ros.running import run_node
-from msgs_json.wire import decode, encode
+from msgs_json.wire import RefusedMessageError, decode, encode
 
 NAME = topics.LEARNER_NODE
 _STATUS_PERIOD_S = 1.0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from biped_common.settings import check_ranges, section, setting
 from learner_node.walking.settings import LearnerSettings
-from msgs_json.settings import check_ranges, section, setting
 
 
 @dataclass(frozen=True)

@@ -14,14 +14,23 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from biped_common.errors import BipedError
+
 Payload = TypeVar("Payload", bound=msgspec.Struct)
 
 
-class MalformedMessageError(ValueError):
+class RefusedMessageError(BipedError, ValueError):
+    """A message was understood but must not be acted on; the text says why.
+
+    It is stale, duplicated, out of range or not meant for now.
+    """
+
+
+class MalformedMessageError(BipedError, ValueError):
     """A message cannot be understood; the text says which field, and why."""
 
 
-class NotFiniteError(ValueError):
+class NotFiniteError(BipedError, ValueError):
     """A payload holds a number that JSON does not know; the text says where."""
 
 

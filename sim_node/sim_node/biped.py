@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from biped_common.timing import seconds
 from biped_description import kinematics
 from biped_description.joints import TORQUE_LIMIT
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
-from msgs_json.timing import seconds
 from sim_node.contact import NO_CONTACT, FloorContact, floor_contact
 from sim_node.control_tick import ControlTick, phase_flags
 from sim_node.disturbance import Disturbance, draw_disturbance

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from msgs_json.timing import CONTROL_PERIOD_US, microseconds
+from biped_common.timing import CONTROL_PERIOD_US, microseconds
 from sim_node.settings import DisturbanceSettings
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from biped_common.errors import BipedError
 
-class SimulationError(Exception):
+
+class SimulationError(BipedError):
     """Base of this package's errors."""
 
 

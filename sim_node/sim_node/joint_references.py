@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from biped_common.timing import CONTROL_PERIOD_S
 from biped_description import kinematics
 from biped_description.joints import JOINT_NAMES
 from msgs_json.segment import WaistSegment
-from msgs_json.timing import CONTROL_PERIOD_S
 
 PlannedPhase = tuple[bool, bool, int]
 """The gait's phase at one control tick: right support, double support, step index."""

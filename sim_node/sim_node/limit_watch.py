@@ -6,8 +6,8 @@ import math
 import operator
 from dataclasses import dataclass
 
+from biped_common.timing import CONTROL_PERIOD_US, microseconds
 from msgs_json.end_cause import EndCause
-from msgs_json.timing import CONTROL_PERIOD_US, microseconds
 from sim_node.contact import FloorContact
 from sim_node.settings import LimitSettings
 

@@ -14,14 +14,14 @@ import pybullet
 from visualization_msgs.msg import Marker
 
 from biped_description.dimensions import BIPED
-from msgs_json import topics
-from msgs_json.ros.guarded import GuardedNode
-from msgs_json.ros.markers import (
+from biped_ros.guarded import GuardedNode
+from biped_ros.markers import (
     CLEAR,
     MarkerForm,
     marker_array_template,
     torso_pose_template,
 )
+from msgs_json import topics
 from msgs_json.segment import WaistSegment
 from sim_node.control_tick import ControlTick
 from sim_node.world import World

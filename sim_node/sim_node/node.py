@@ -11,19 +11,18 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_srvs.srv import SetBool, Trigger
 
+from biped_common.seeds import robot_stream
 from biped_description.urdf import urdf_path
+from biped_ros.cdr import string_message, string_text
+from biped_ros.guarded import GuardedNode
+from biped_ros.messages import segment_of, segment_template, segment_values
+from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
-from msgs_json.refusal import RefusedMessageError
-from msgs_json.ros.cdr import string_message, string_text
-from msgs_json.ros.guarded import GuardedNode
-from msgs_json.ros.messages import segment_of, segment_template, segment_values
-from msgs_json.ros.running import run_node
-from msgs_json.seeds import robot_stream
 from msgs_json.segment import WaistSegment
-from msgs_json.wire import MalformedMessageError, decode, encode
+from msgs_json.wire import MalformedMessageError, RefusedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
 from sim_node.markers import MarkerPublisher

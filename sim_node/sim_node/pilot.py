@@ -10,8 +10,8 @@ from biped_description.kinematics import leg_joint_positions
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
-from msgs_json.refusal import RefusedMessageError
 from msgs_json.segment import WaistSegment
+from msgs_json.wire import RefusedMessageError
 from sim_node.biped import SimulatedBiped
 
 

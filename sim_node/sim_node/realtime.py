@@ -15,13 +15,13 @@ from queue import Empty, SimpleQueue
 
 import numpy as np
 
-from msgs_json.end_cause import EndCause
-from msgs_json.observation import Observation
-from msgs_json.timing import (
+from biped_common.timing import (
     CONTROL_PERIOD_S,
     CONTROL_PERIOD_US,
     TICKS_PER_LEARNING_TICK,
 )
+from msgs_json.end_cause import EndCause
+from msgs_json.observation import Observation
 from sim_node.pilot import Pilot
 
 _REMEMBERED_TICKS = 10_000

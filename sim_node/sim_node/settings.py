@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from msgs_json.settings import check_ranges, section, setting
+from biped_common.settings import check_ranges, section, setting
 
 
 @dataclass(frozen=True)

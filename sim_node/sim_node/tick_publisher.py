@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from biped_description.joints import JOINT_NAMES
-from msgs_json import topics
-from msgs_json.observation import PhaseFlags
-from msgs_json.ros.cdr import string_message
-from msgs_json.ros.guarded import GuardedNode
-from msgs_json.ros.messages import (
+from biped_ros.cdr import string_message
+from biped_ros.guarded import GuardedNode
+from biped_ros.messages import (
     clock_template,
     joint_state_template,
     point_template,
 )
+from msgs_json import topics
+from msgs_json.observation import PhaseFlags
 from msgs_json.wire import encode
 from sim_node.control_tick import ControlTick
 

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from msgs_json.timing import CONTROL_PERIOD_S
+from biped_common.timing import CONTROL_PERIOD_S
 from sim_node.control_tick import ControlTick
 
 _N_JOINTS = 12

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.dimensions import BIPED
 from biped_description.joints import JOINT_NAMES, TORQUE_LIMIT
 from biped_description.urdf import urdf_path
-from msgs_json.timing import CONTROL_PERIOD_S
 from sim_node.errors import SnapshotError, WorldClosedError
 from sim_node.quiet import engine_chatter_dropped
 

@@ -7,7 +7,7 @@ import yaml
 
 from biped_bringup.cli.main import parser
 from biped_bringup.run_settings import PRESETS, RunSettings, load_settings
-from msgs_json.settings import from_mapping, to_mapping
+from biped_common.settings import from_mapping, to_mapping
 
 # Options that take a number with a unit, and how their help names it.
 UNITS = {

@@ -8,7 +8,7 @@ import pytest
 
 INTERRUPTED = """
 import os, signal
-from biped_bringup.cli.signals import loading
+from biped_common.signals import loading
 {before}
 with loading():
     try:
@@ -39,7 +39,7 @@ def test_who_has_had_it_ignored_goes_on():
 def test_afterwards_it_is_as_before(handler):
     code = f"""
 import signal
-from biped_bringup.cli.signals import loading
+from biped_common.signals import loading
 signal.signal(signal.SIGINT, signal.{handler})
 with loading():
     pass

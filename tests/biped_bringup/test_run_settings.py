@@ -14,7 +14,7 @@ from biped_bringup.run_settings import (
     load_settings,
     preset_text,
 )
-from msgs_json.settings import SettingsError, to_mapping
+from biped_common.settings import SettingsError, to_mapping
 
 PARTIAL_PRESETS = [name for name in PRESETS if name != "paper"]
 

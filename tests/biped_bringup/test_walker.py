@@ -7,10 +7,10 @@ import pytest
 from tests.biped_bringup.runs import SHORT, quick
 
 from biped_bringup.walker import Walker
+from biped_common.timing import TICKS_PER_LEARNING_TICK
 from learner_node.walking.actions import NO_CORRECTION_M
 from learner_node.walking.frozen import FrozenWalk, static_walk
 from msgs_json.end_cause import EndCause
-from msgs_json.timing import TICKS_PER_LEARNING_TICK
 from sim_node.control_tick import ControlTick
 
 SETTINGS = quick(*SHORT)

@@ -7,8 +7,8 @@ import rclpy
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.training import TrainingRun
-from msgs_json.ros.guarded import message_type
-from msgs_json.ros.qos import qos_profile
+from biped_ros.guarded import message_type
+from biped_ros.qos import qos_profile
 
 SEED = 5
 TIMEOUT_S = 60.0

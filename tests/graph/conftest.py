@@ -11,7 +11,7 @@ import pytest
 import yaml
 from tests.graph.domains import MODULE, SHARED, own_domain
 
-from biped_bringup.supervisor.environment import LOCALHOST, node_environment
+from biped_ros.environment import LOCALHOST, node_environment
 
 # The middleware reads its profile once, before the first node of a process.
 os.environ.update(node_environment(own_domain(MODULE), LOCALHOST))

@@ -16,7 +16,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_srvs.srv import Trigger
 
-from msgs_json.ros.guarded import message_type
+from biped_ros.guarded import message_type
 from msgs_json.topics import Topic
 
 SAMPLE = Path(__file__).parents[2] / "bags/sample"
@@ -141,7 +141,7 @@ def wait_for(condition):
 def recorder(domain, folder):
     """Have everything recorded, until a Ctrl-C at the end."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "biped_bringup.recorder.node", "--ros-args",
+        [sys.executable, "-m", "biped_bag.recorder.node", "--ros-args",
          "-p", f"folder:={folder}"],
         env=os.environ | {"ROS_DOMAIN_ID": str(domain)},
         stderr=subprocess.DEVNULL,

@@ -14,10 +14,10 @@ from tests.graph.domains import MODULE, own_domain
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.one_executor import OneExecutor
 from biped_bringup.run_settings import load_settings
+from biped_ros.guarded import message_type
+from biped_ros.messages import segment_template, segment_values
+from biped_ros.qos import qos_profile
 from msgs_json import topics
-from msgs_json.ros.guarded import message_type
-from msgs_json.ros.messages import segment_template, segment_values
-from msgs_json.ros.qos import qos_profile
 from trajectory_node.waist_reference import WaistReference
 
 SEED = 5

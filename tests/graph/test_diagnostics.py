@@ -6,11 +6,11 @@ from std_msgs.msg import String
 from tests.graph.clients import TIMEOUT_S, Client, quick
 
 from biped_bringup.one_executor import OneExecutor
+from biped_ros.guarded import message_type
+from biped_ros.messages import segment_template, segment_values
+from biped_ros.qos import qos_profile
 from msgs_json import topics
 from msgs_json.observation import Observation
-from msgs_json.ros.guarded import message_type
-from msgs_json.ros.messages import segment_template, segment_values
-from msgs_json.ros.qos import qos_profile
 from msgs_json.wire import decode, encode
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference

@@ -10,8 +10,8 @@ from std_msgs.msg import String
 from tests.payloads import RESULT, STATUS
 
 from biped_bringup.supervisor.graph_watch import GraphWatch
+from biped_ros.qos import qos_profile
 from msgs_json import topics
-from msgs_json.ros.qos import qos_profile
 from msgs_json.wire import encode
 
 OWN, OTHER = "host:12", "host:13"

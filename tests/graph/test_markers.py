@@ -13,9 +13,9 @@ from tests.graph.domains import MODULE, own_domain
 from visualization_msgs.msg import Marker, MarkerArray
 
 from biped_bringup.one_executor import OneExecutor
+from biped_ros.cdr import MessageTemplate
+from biped_ros.markers import MarkerForm, marker_array_template
 from msgs_json import topics
-from msgs_json.ros.cdr import MessageTemplate
-from msgs_json.ros.markers import MarkerForm, marker_array_template
 from sim_node.markers import support_polygon
 
 LENGTH_M, WIDTH_M, AHEAD_M = 0.22, 0.14, 0.02

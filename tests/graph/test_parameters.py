@@ -18,9 +18,9 @@ from tests.graph.clients import TIMEOUT_S, Client, hashes, learned_in_process, q
 from tests.graph.domains import MODULE, own_domain
 
 from biped_bringup.one_executor import OneExecutor
+from biped_common.settings import SettingsError
 from learner_node.node import LearnerNode
 from msgs_json import topics
-from msgs_json.settings import SettingsError
 from sim_node.node import SimNode
 from trajectory_node.node import TrajectoryNode
 

@@ -11,10 +11,10 @@ from rosgraph_msgs.msg import Clock
 from tests.graph.domains import MODULE, own_domain
 from tests.graph.players import SAMPLE, Listener, Player, recorder, wait_for
 
-from biped_bringup.bag.reader import BagReader
+from biped_bag.reader import BagReader
 from biped_bringup.cli.main import main
-from biped_bringup.ros2.main import main as ros2
 from msgs_json import topics
+from ros2_verbs.main import main as ros2
 
 DOMAIN = own_domain(MODULE)
 INTERRUPTED = 130

@@ -22,18 +22,19 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 from tests.graph.domains import MODULE, own_domain
 
-from biped_bringup.bag.metadata import read_metadata
-from biped_bringup.bag.records import STATE_KEY
+from biped_bag.metadata import read_metadata
+from biped_bag.recorder.run_record import run_record
+from biped_bag.records import STATE_KEY
 from biped_bringup.cli.recording import recorder_parameters
 from biped_bringup.node_parameters import node_parameters
-from biped_bringup.recorder.run_record import run_record
 from biped_bringup.run_settings import load_settings
-from biped_bringup.supervisor.environment import node_environment
 from biped_bringup.supervisor.supervisor import RECORDER, Supervisor
 from biped_bringup.training import TrainingRun
+from biped_common.settings import to_mapping
+from biped_ros.cdr import string_text
+from biped_ros.environment import node_environment
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
-from msgs_json.ros.cdr import string_text
 from msgs_json.wire import decode
 
 SEED = 5
@@ -76,7 +77,7 @@ class Graph:
             recorders=2,  # the robot waits for the witness, too
         ).flat()
         run = run_record(
-            settings,
+            to_mapping(settings),
             SEED,
             preset="quick",
             pace="lockstep",
@@ -328,7 +329,7 @@ def test_a_bag_on_a_full_disk_counts_what_is_in_it(hard_run):
 def recorder_alone(domain, folder):
     """Start a recorder that cannot begin; return exit status and last words."""
     done = subprocess.run(
-        [sys.executable, "-m", "biped_bringup.recorder.node", "--ros-args",
+        [sys.executable, "-m", "biped_bag.recorder.node", "--ros-args",
          "-p", f"folder:={folder}"],
         env=os.environ | {"ROS_DOMAIN_ID": str(domain)},
         capture_output=True,

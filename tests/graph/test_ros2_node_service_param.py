@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 import yaml
-from tests.biped_bringup.ros2.golden_files import golden
 from tests.graph.domains import MODULE, own_domain
+from tests.ros2_verbs.golden_files import golden
 
-from biped_bringup.ros2.main import main
+from ros2_verbs.main import main
 
 DOMAIN = own_domain(MODULE)
-COMMAND = (sys.executable, "-m", "biped_bringup.ros2.main")
+COMMAND = (sys.executable, "-m", "ros2_verbs.main")
 TIMEOUT_S = 90.0
 # Discovery takes as long as it takes; a list may be looked at again.
 LOOKS = 8

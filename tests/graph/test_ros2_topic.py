@@ -19,9 +19,9 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 
-from biped_bringup.ros2.main import main
+from ros2_verbs.main import main
 
-GOLDEN = Path(__file__).parents[1] / "biped_bringup/ros2/golden/topic_verbs"
+GOLDEN = Path(__file__).parents[1] / "ros2_verbs/golden/topic_verbs"
 TIMEOUT_S = 60.0
 PERIOD_S = 0.02
 ONCE = ("--once", "--timeout", "30")
@@ -100,7 +100,7 @@ def talker(domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Talker]:
 
 def ros2(*words: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-m", "biped_bringup.ros2.main", *words],
+        [sys.executable, "-m", "ros2_verbs.main", *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -11,13 +11,13 @@ import pytest
 
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
-from biped_bringup.supervisor.environment import node_environment
 from biped_bringup.supervisor.restart_budget import RestartBudget
 from biped_bringup.supervisor.supervisor import (
     NodeFailureError,
     Patience,
     Supervisor,
 )
+from biped_ros.environment import node_environment
 from learner_node.checkpoint import read_checkpoint
 
 SEED = 5

@@ -10,7 +10,7 @@ from tests.learner_node.walking.observations import observation
 from learner_node.walking.cost import CostIntegral
 from learner_node.walking.settings import CostSettings
 from msgs_json.end_cause import EndCause
-from msgs_json.refusal import RefusedMessageError
+from msgs_json.wire import RefusedMessageError
 from sim_node.pilot import Pilot
 
 # Even standing sinks in by more.

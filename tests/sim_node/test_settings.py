@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from msgs_json.settings import SettingsError, from_mapping, to_mapping
+from biped_common.settings import SettingsError, from_mapping, to_mapping
 from sim_node.settings import (
     DisturbanceSettings,
     LimitSettings,

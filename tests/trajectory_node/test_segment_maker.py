@@ -7,7 +7,7 @@ import pytest
 from tests.learner_node.walking.observations import observation
 
 from msgs_json.end_cause import EndCause
-from msgs_json.refusal import RefusedMessageError
+from msgs_json.wire import RefusedMessageError
 from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference

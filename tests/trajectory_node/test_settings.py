@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from msgs_json.settings import SettingsError, from_mapping, to_mapping
+from biped_common.settings import SettingsError, from_mapping, to_mapping
 from trajectory_node.settings import (
     CorrectionSettings,
     GaitSettings,

@@ -15,7 +15,7 @@ import numpy as np
 from numba import float64, int64, njit
 from numpy.typing import NDArray
 
-from msgs_json.timing import (
+from biped_common.timing import (
     CONTROL_PERIOD_S,
     LEARNING_PERIOD_S,
     TICKS_PER_LEARNING_TICK,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from biped_common.errors import BipedError
 
-class TrajectoryError(ValueError):
+
+class TrajectoryError(BipedError, ValueError):
     """Base of this package's errors."""
 
 

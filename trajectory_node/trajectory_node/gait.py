@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from biped_description.dimensions import BIPED
-from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from trajectory_node.settings import GaitSettings
 
 # The plan runs on beyond the walk's end, standing, for look-ahead.

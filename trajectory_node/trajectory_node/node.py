@@ -5,17 +5,17 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from msgs_json import topics
-from msgs_json.observation import Observation
-from msgs_json.observation_gaps import ObservationGaps
-from msgs_json.ros.cdr import string_text
-from msgs_json.ros.guarded import GuardedNode
-from msgs_json.ros.messages import (
+from biped_ros.cdr import string_text
+from biped_ros.guarded import GuardedNode
+from biped_ros.messages import (
     correction_of,
     segment_template,
     segment_values,
 )
-from msgs_json.ros.running import run_node
+from biped_ros.observation_gaps import ObservationGaps
+from biped_ros.running import run_node
+from msgs_json import topics
+from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import decode
 from trajectory_node.errors import InfeasibleGaitError

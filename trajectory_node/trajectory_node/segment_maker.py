@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
-from msgs_json.refusal import RefusedMessageError
 from msgs_json.segment import WaistSegment
+from msgs_json.wire import RefusedMessageError
 from trajectory_node.waist_reference import WaistReference
 
 

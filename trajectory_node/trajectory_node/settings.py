@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from msgs_json.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import SettingsError, check_ranges, section, setting
 
 # A foot or the ZMP cannot be moved in less time than this.
 _SHORTEST_PHASE_S = 0.1

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.timing import TICKS_PER_LEARNING_TICK
 from msgs_json.segment import WaistSegment
-from msgs_json.timing import TICKS_PER_LEARNING_TICK
 from trajectory_node.bspline import CorrectionSpline
 from trajectory_node.errors import TrajectoryError
 from trajectory_node.gait import LOOK_AHEAD_TICKS, plan_gait

@@ -15,11 +15,11 @@ from __future__ import annotations
 
 import math
 
+from biped_common.timing import seconds
 from learner_node.walking.settings import CostSettings
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms, EpisodeResult
 from msgs_json.observation import Observation
-from msgs_json.timing import seconds
 
 _FINAL_ZMP_WEIGHT = 50.0
 _TRACKING_WEIGHT = 1000.0

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.timing import seconds
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
-from msgs_json.timing import seconds
 
 _CAUSES = tuple(EndCause)
 _TYPES = {

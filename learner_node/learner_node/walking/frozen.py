@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.timing import TICKS_PER_LEARNING_TICK
 from learner_node.walking.actions import NO_CORRECTION_M, corrections_m
 from learner_node.walking.cost import CostIntegral
 from learner_node.walking.inputs import sensory_input
@@ -15,7 +16,6 @@ from learner_node.xol.agent import XolAgent
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
-from msgs_json.timing import TICKS_PER_LEARNING_TICK
 
 Decide = Callable[[Observation], NDArray[np.float64]]
 

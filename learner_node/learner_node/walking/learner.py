@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.timing import TICKS_PER_LEARNING_TICK
 from learner_node.memory_hash import Arrays, arrays_sha256
 from learner_node.walking.actions import (
     N_COMPONENTS,
@@ -27,7 +28,6 @@ from learner_node.xol.rules import ActionSpace
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
-from msgs_json.timing import TICKS_PER_LEARNING_TICK
 
 # Penalty type (0-based) of each failure. Table 1 names the first two; the paper's text
 # lists the others as failures too, and they get the highest priority. Ends that are

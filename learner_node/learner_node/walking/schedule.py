@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from learner_node.walking.settings import ScheduleSettings
-from msgs_json.timing import (
+from biped_common.timing import (
     LEARNING_PERIOD_US,
     TICKS_PER_LEARNING_TICK,
     microseconds,
 )
+from learner_node.walking.settings import ScheduleSettings
 
 
 class LearningSchedule:

@@ -15,6 +15,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.seeds import learner_stream
+from biped_common.timing import seconds
 from learner_node.memory_hash import Arrays
 from learner_node.walking.cost import CostIntegral
 from learner_node.walking.episode_log import EpisodeLog
@@ -25,8 +27,6 @@ from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
-from msgs_json.seeds import learner_stream
-from msgs_json.timing import seconds
 
 _MEMORY, _LOG = "memory", "log"
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from biped_common.settings import SettingsError, check_ranges, section, setting
 from learner_node.xol.settings import XolSettings
-from msgs_json.settings import SettingsError, check_ranges, section, setting
 
 INPUT_NAMES = (
     "right_support",

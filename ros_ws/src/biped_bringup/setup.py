@@ -6,7 +6,7 @@ setup(
     name=NAME,
     version="0.1.0",
     packages=find_packages(),
-    package_data={NAME: ["presets/*.yaml", "*/*.xml"]},
+    package_data={NAME: ["presets/*.yaml"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
@@ -15,7 +15,12 @@ setup(
     entry_points={
         "console_scripts": [
             "biped = biped_bringup.cli.main:main",
-            "recorder = biped_bringup.recorder.node:main",
-        ]
+        ],
+        "biped.verbs": [
+            "check = biped_bringup.cli.check:add_parser",
+            "learn = biped_bringup.cli.learn:add_parser",
+            "up = biped_bringup.cli.up:add_parser",
+            "walk = biped_bringup.cli.walk:add_parser",
+        ],
     },
 )

@@ -1,7 +1,7 @@
 """Observations made by hand."""
 
+from biped_common.timing import TICKS_PER_LEARNING_TICK
 from msgs_json.observation import Observation, PhaseFlags
-from msgs_json.timing import TICKS_PER_LEARNING_TICK
 
 PHASE = PhaseFlags(
     planned_right_support=False,

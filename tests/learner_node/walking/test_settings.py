@@ -2,9 +2,9 @@
 
 import pytest
 
+from biped_common.settings import SettingsError, from_mapping, to_mapping
 from learner_node.walking.settings import LearnerSettings
 from learner_node.xol.settings import FixedModeSettings, StateSettings, XolSettings
-from msgs_json.settings import SettingsError, from_mapping, to_mapping
 
 # (dotted key, value, what the message says is allowed)
 REFUSED = [

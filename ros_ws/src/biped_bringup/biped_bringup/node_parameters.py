@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from biped_bringup.run_settings import RunSettings
+from biped_common.settings import to_mapping
+from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
+from biped_ros.parameters import flattened
 from learner_node.settings import LearnerNodeSettings
-from msgs_json.ros.parameters import flattened
-from msgs_json.settings import to_mapping
-from msgs_json.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from sim_node.settings import SimNodeSettings
 from trajectory_node.settings import TrajectorySettings
 

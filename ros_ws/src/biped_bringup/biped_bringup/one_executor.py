@@ -16,8 +16,8 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from biped_bringup.node_parameters import NodeParameters
+from biped_ros.parameters import parameters_of
 from learner_node.node import LearnerNode
-from msgs_json.ros.parameters import parameters_of
 from sim_node.node import SimNode
 from trajectory_node.node import TrajectoryNode
 

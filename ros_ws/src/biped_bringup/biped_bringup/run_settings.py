@@ -10,8 +10,14 @@ from typing import Any
 
 import yaml
 
+from biped_common.settings import (
+    SettingsError,
+    from_mapping,
+    overlay,
+    section,
+    to_mapping,
+)
 from learner_node.walking.settings import LearnerSettings
-from msgs_json.settings import SettingsError, from_mapping, overlay, section, to_mapping
 from sim_node.settings import SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 

@@ -12,14 +12,14 @@ import numpy as np
 
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import Walker
+from biped_common.seeds import robot_stream
+from biped_common.settings import from_mapping, to_mapping
+from biped_common.timing import seconds
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.learner import WalkLearner
 from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
-from msgs_json.seeds import robot_stream
-from msgs_json.settings import from_mapping, to_mapping
-from msgs_json.timing import seconds
 
 # Packages whose version can change a walk's last bit.
 _PACKAGES = ("biped", "numpy", "numba", "pybullet")

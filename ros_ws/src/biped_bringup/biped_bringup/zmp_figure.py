@@ -9,8 +9,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.dimensions import BIPED
-from msgs_json.timing import CONTROL_PERIOD_S
 from sim_node.control_tick import ControlTick
 from sim_node.settings import LimitSettings
 from trajectory_node.gait import GaitPlan

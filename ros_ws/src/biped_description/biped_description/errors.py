@@ -1,7 +1,9 @@
 """Errors raised by this package, one family: ``DescriptionError``."""
 
+from biped_common.errors import BipedError
 
-class DescriptionError(ValueError):
+
+class DescriptionError(BipedError, ValueError):
     """Base of all errors of this package."""
 
 

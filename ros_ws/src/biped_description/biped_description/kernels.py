@@ -14,7 +14,7 @@ from typing import Final, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from biped_description.compiled import compiled
+from biped_common.compiled import compiled
 from biped_description.joints import KNEE
 
 Array: TypeAlias = NDArray[np.float64]

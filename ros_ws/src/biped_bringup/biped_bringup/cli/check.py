@@ -8,15 +8,11 @@ from typing import Any
 
 import yaml
 
-from biped_bringup.cli.options import (
-    add_json_option,
-    add_settings_options,
-    print_json,
-    settings_of,
-)
+from biped_bringup.cli.options import add_settings_options, settings_of
+from biped_common.command_line import add_json_option, print_json
+from biped_common.settings import to_mapping
+from biped_common.timing import seconds
 from learner_node.walking.schedule import LearningSchedule
-from msgs_json.settings import to_mapping
-from msgs_json.timing import seconds
 from trajectory_node.waist_reference import WaistReference
 
 

@@ -10,21 +10,25 @@ from typing import Any
 
 from rich.console import Console
 
-from biped_bringup.cli.errors import CommandError
-from biped_bringup.cli.exit_status import DONE, INTERRUPTED, NOT_ACHIEVED
 from biped_bringup.cli.options import (
-    add_json_option,
     add_settings_options,
     names_settings,
-    natural,
-    print_json,
     settings_of,
-    writable_folder,
 )
 from biped_bringup.cli.progress import TrainingProgress
-from biped_bringup.cli.signals import stop_requests
 from biped_bringup.training import TrainingRun
-from learner_node.atomic_file import atomic_file
+from biped_common.atomic_file import atomic_file
+from biped_common.command_line import (
+    DONE,
+    INTERRUPTED,
+    NOT_ACHIEVED,
+    CommandError,
+    add_json_option,
+    natural,
+    print_json,
+    writable_folder,
+)
+from biped_common.signals import stop_requests
 from msgs_json.episode_result import EpisodeResult
 
 MEMORY_FILE = "memory.npz"

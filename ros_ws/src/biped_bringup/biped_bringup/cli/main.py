@@ -1,4 +1,4 @@
-"""`biped`: learn the walk, walk it, check a configuration, work with bags.
+"""`biped`: its verbs are entry points of the group `biped.verbs`.
 
 Exit status: 0 done; 1 an honest "not achieved" (walk not learned, walk failed);
 2 wrong input; 130 interrupted.
@@ -13,11 +13,10 @@ from collections.abc import Sequence
 
 import argcomplete
 
-from biped_bringup.cli.exit_status import INTERRUPTED, WRONG_INPUT
-from biped_bringup.cli.signals import loading
-from biped_bringup.cli.verbs import add_verbs
-
-VERBS = ("learn", "walk", "up", "bag", "check")
+from biped_common.command_line import INTERRUPTED, WRONG_INPUT, CommandError
+from biped_common.errors import BipedError
+from biped_common.signals import loading
+from biped_common.verbs import add_verbs
 
 
 def parser(words: Sequence[str] = ()) -> argparse.ArgumentParser:
@@ -29,31 +28,25 @@ def parser(words: Sequence[str] = ()) -> argparse.ArgumentParser:
         epilog="exit status: 0 done, 1 not achieved, 2 wrong input, 130 interrupted",
     )
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
-    add_verbs(verbs, "biped_bringup.cli.", VERBS, words)
+    add_verbs(verbs, "biped.verbs", words)
     return top
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status."""
-    with loading():
-        commands = parser(sys.argv[1:] if arguments is None else arguments)
-        from biped_bringup.bag.errors import BagError
-        from biped_bringup.cli.errors import CommandError
-        from learner_node.checkpoint import CheckpointError
-        from msgs_json.settings import SettingsError
-        from trajectory_node.errors import TrajectoryError
+    words = sys.argv[1:] if arguments is None else arguments
+    try:
+        with loading():
+            commands = parser(words)
+    except CommandError as error:
+        print(f"biped: {error}", file=sys.stderr)
+        return WRONG_INPUT
     argcomplete.autocomplete(commands)
     options = commands.parse_args(arguments)
     try:
         status: int = options.run(options)
         sys.stdout.flush()
-    except (
-        SettingsError,
-        TrajectoryError,
-        CheckpointError,
-        CommandError,
-        BagError,
-    ) as error:
+    except BipedError as error:
         print(f"biped {options.verb}: {error}", file=sys.stderr)
         return WRONG_INPUT
     except BrokenPipeError:

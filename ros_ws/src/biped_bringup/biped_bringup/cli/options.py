@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
-from typing import Any
 
-from biped_bringup.cli.errors import CommandError
 from biped_bringup.run_settings import (
     DEFAULT_PRESET,
     PRESETS,
@@ -43,13 +40,6 @@ def add_settings_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_json_option(parser: argparse.ArgumentParser) -> None:
-    """Add --json."""
-    parser.add_argument(
-        "--json", action="store_true", help="print one JSON object, for scripts"
-    )
-
-
 def settings_of(options: argparse.Namespace) -> RunSettings:
     """Return the settings that the options describe."""
     return load_settings(preset_of(options), options.config, options.changes)
@@ -63,34 +53,3 @@ def preset_of(options: argparse.Namespace) -> str:
 def names_settings(options: argparse.Namespace) -> bool:
     """Return whether any of the settings options was given."""
     return bool(options.preset or options.config or options.changes)
-
-
-def writable_folder(folder: Path) -> Path:
-    """Return the folder, made if need be.
-
-    Raises:
-        CommandError: it cannot be made or written to.
-    """
-    probe = folder / ".writable"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise CommandError(
-            f"{folder}: must be a folder that can be written to ({error.strerror})"
-        ) from None
-    return folder
-
-
-def natural(text: str) -> int:
-    """Parse a whole number that is at least 0."""
-    value = int(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"{text}: must be at least 0")
-    return value
-
-
-def print_json(values: dict[str, Any]) -> None:
-    """Print one JSON object."""
-    print(json.dumps(values, indent=2))

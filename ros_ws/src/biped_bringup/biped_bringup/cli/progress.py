@@ -8,9 +8,9 @@ from types import TracebackType
 from rich.console import Console
 from rich.text import Text
 
-from biped_bringup.cli.live_display import LiveDisplay
 from biped_bringup.training import TrainingRun
-from msgs_json.timing import seconds
+from biped_common.live_display import LiveDisplay
+from biped_common.timing import seconds
 
 # How often a line is written where there is no terminal to redraw [s].
 _PLAIN_INTERVAL_S = 10.0

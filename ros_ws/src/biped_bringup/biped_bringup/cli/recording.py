@@ -9,15 +9,15 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from biped_bringup.bag.errors import BagError
-from biped_bringup.bag.metadata import read_metadata
-from biped_bringup.bag.records import LOST_KEY, STATE_KEY
-from biped_bringup.bag.writer import holds_bag
-from biped_bringup.cli.errors import CommandError
-from biped_bringup.recorder.settings import RecorderSettings
+from biped_bag.errors import BagError
+from biped_bag.metadata import read_metadata
+from biped_bag.recorder.settings import RecorderSettings
+from biped_bag.records import LOST_KEY, STATE_KEY
+from biped_bag.writer import holds_bag
 from biped_bringup.supervisor.supervisor import RECORDER, Supervisor
-from msgs_json.ros.parameters import flattened
-from msgs_json.settings import to_mapping
+from biped_common.command_line import CommandError
+from biped_common.settings import to_mapping
+from biped_ros.parameters import flattened
 
 NOWHERE = "none"
 

@@ -6,10 +6,10 @@ from rich.console import Console, Group
 from rich.table import Table
 from rich.text import Text
 
-from biped_bringup.cli.live_display import LiveDisplay
 from biped_bringup.supervisor.supervisor import Supervisor
+from biped_common.live_display import LiveDisplay
+from biped_common.timing import seconds
 from msgs_json.learner_status import LearnerStatus
-from msgs_json.timing import seconds
 
 # How often the learner's state is written where there is no screen to redraw [s].
 _PLAIN_INTERVAL_S = 5.0

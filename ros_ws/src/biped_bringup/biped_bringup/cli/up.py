@@ -10,16 +10,13 @@ from typing import Any
 
 from rich.console import Console
 
-from biped_bringup.cli.errors import CommandError
-from biped_bringup.cli.exit_status import NODE_FAILURE
+from biped_bag.recorder.run_record import run_record
 from biped_bringup.cli.learn import MEMORY_FILE
 from biped_bringup.cli.options import (
     add_settings_options,
     names_settings,
-    natural,
     preset_of,
     settings_of,
-    writable_folder,
 )
 from biped_bringup.cli.recording import (
     add_recording_options,
@@ -27,17 +24,10 @@ from biped_bringup.cli.recording import (
     bag_report,
     recorder_parameters,
 )
-from biped_bringup.cli.signals import stop_requests
 from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.cli.up_report import report
 from biped_bringup.node_parameters import node_parameters
-from biped_bringup.recorder.run_record import run_record
 from biped_bringup.run_settings import RunSettings
-from biped_bringup.supervisor.environment import (
-    DISCOVERY_RANGES,
-    node_environment,
-    private_domain,
-)
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from biped_bringup.supervisor.supervisor import (
     RECORDER,
@@ -46,6 +36,19 @@ from biped_bringup.supervisor.supervisor import (
     Supervisor,
 )
 from biped_bringup.training import TrainingRun
+from biped_common.command_line import (
+    NODE_FAILURE,
+    CommandError,
+    natural,
+    writable_folder,
+)
+from biped_common.settings import to_mapping
+from biped_common.signals import stop_requests
+from biped_ros.environment import (
+    DISCOVERY_RANGES,
+    node_environment,
+    private_domain,
+)
 from msgs_json.end_cause import EndCause
 from trajectory_node.waist_reference import WaistReference
 
@@ -159,7 +162,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         begun_with = memory_file if options.greedy or options.resume else None
         run_data = run_record(
-            settings,
+            to_mapping(settings),
             seed,
             preset=preset_of(options) if begun_with is None else "",
             pace=options.pace,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from biped_bringup.cli.exit_status import DONE, INTERRUPTED, NOT_ACHIEVED
 from biped_bringup.supervisor.supervisor import Supervisor
-from msgs_json.timing import seconds
+from biped_common.command_line import DONE, INTERRUPTED, NOT_ACHIEVED
+from biped_common.timing import seconds
 
 
 def report(

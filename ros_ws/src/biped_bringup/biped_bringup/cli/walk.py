@@ -11,22 +11,22 @@ import msgspec
 import numpy as np
 import yaml
 
-from biped_bringup.cli.errors import CommandError
-from biped_bringup.cli.exit_status import DONE, NOT_ACHIEVED
-from biped_bringup.cli.options import (
-    add_json_option,
-    add_settings_options,
-    natural,
-    print_json,
-    settings_of,
-)
+from biped_bringup.cli.options import add_settings_options, settings_of
 from biped_bringup.run_settings import changed_settings
 from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_bringup.zmp_figure import FIGURE_SUFFIXES, ZmpTrace, draw_zmp
+from biped_common.command_line import (
+    DONE,
+    NOT_ACHIEVED,
+    CommandError,
+    add_json_option,
+    natural,
+    print_json,
+)
+from biped_common.timing import seconds
 from learner_node.walking.frozen import greedy_walk, static_walk
 from msgs_json.episode_result import EpisodeResult
-from msgs_json.timing import seconds
 
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:

@@ -9,10 +9,10 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import String
 
+from biped_ros.qos import qos_profile
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
-from msgs_json.ros.qos import qos_profile
 from msgs_json.wire import MalformedMessageError, decode
 
 NAME = "supervisor"

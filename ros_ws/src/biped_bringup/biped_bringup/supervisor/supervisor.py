@@ -28,15 +28,16 @@ import yaml
 from biped_bringup.supervisor.child import Child
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
-from msgs_json.ros.process import process_name
-from msgs_json.ros.running import REFUSED, WRONG_INPUT
+from biped_common.errors import BipedError
+from biped_ros.process import process_name
+from biped_ros.running import REFUSED, WRONG_INPUT
 
 RECORDER = "recorder_node"
 # The recorder comes first and ends last: it misses nothing. The robot comes last: when
 # it offers its first walk, everybody listens.
 START_ORDER = (RECORDER, "trajectory_node", "learner_node", "sim_node")
 _MODULES = {
-    RECORDER: "biped_bringup.recorder.node",
+    RECORDER: "biped_bag.recorder.node",
     "trajectory_node": "trajectory_node.node",
     "learner_node": "learner_node.node",
     "sim_node": "sim_node.node",
@@ -56,7 +57,7 @@ class Patience:
     """For a node to end when asked, and again when terminated."""
 
 
-class NodeFailureError(Exception):
+class NodeFailureError(BipedError):
     """A node could not be kept running; the text says which, and why."""
 
 

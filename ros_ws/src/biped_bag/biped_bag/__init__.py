@@ -1,0 +1,1 @@
+"""Bags: record, play, look into, verify, mend, cut and export them."""

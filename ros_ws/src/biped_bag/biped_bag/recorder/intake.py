@@ -1,0 +1,190 @@
+"""Subscriptions to everything that is wanted, and what has come over them.
+
+Messages are taken out of the middleware's queues in turns, with the times and numbers
+that it keeps with them: this costs 2 us a message where a callback costs 20. The node
+that holds the subscriptions must therefore not be given to an executor.
+"""
+
+from __future__ import annotations
+
+import importlib
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
+
+from biped_bag.recorder.continuity import Continuity
+from biped_bag.recorder.offered_qos import (
+    DEPTH,
+    as_rosbag2,
+    is_latched,
+    matching_qos,
+    receives_from,
+)
+from biped_bag.recorder.selection import Selection
+from biped_bag.writer import RecordedMessage
+from biped_ros.qos import qos_profile
+from msgs_json.topics import Topic
+
+
+@dataclass
+class IncomingTopic:
+    """One topic that is listened to."""
+
+    name: str
+    type_name: str
+    message_class: Any
+    qos: QoSProfile
+    """Asked for."""
+    subscription: Subscription
+    received: int = 0
+    continuity: Continuity = field(default_factory=Continuity)
+    offered_qos: list[dict[str, Any]] = field(default_factory=list)
+    """By the publishers when the topic was announced, as rosbag2 writes it."""
+    type_hash: str = ""
+    announced: bool = False
+    publishers_there: int = 0
+    gids: set[bytes] = field(default_factory=set)
+
+    @property
+    def latched(self) -> bool:
+        """Whether who comes later still gets the last message."""
+        return is_latched(self.qos)
+
+
+class Intake:
+    """Everything that the recorder hears."""
+
+    def __init__(
+        self,
+        listener: Node,
+        selection: Selection,
+        announce: Callable[[IncomingTopic], None],
+        warn: Callable[[str], None],
+    ) -> None:
+        """Listen to nothing yet.
+
+        Args:
+            listener: node for the subscriptions, in no executor.
+            selection: of topics.
+            announce: told of a topic once, before its first message is taken.
+            warn: told, once, of every topic that cannot be recorded in full.
+        """
+        self.topics: dict[str, IncomingTopic] = {}
+        self._listener = listener
+        self._selection = selection
+        self._announce = announce
+        self._warn = warn
+        self._given_up: set[str] = set()
+        self._held: list[RecordedMessage] = []
+
+    def expect(self, topics: Iterable[Topic]) -> None:
+        """Listen to topics that will be published as their contract says."""
+        for topic in topics:
+            if self._selection.wants(topic.name):
+                qos = matching_qos([qos_profile(topic)])
+                self._listen(topic.name, topic.type_name, qos)
+
+    def look_around(self) -> None:
+        """Listen to what has come up on the graph."""
+        for name, type_names in self._listener.get_topic_names_and_types():
+            if name in self._given_up or not self._selection.wants(name):
+                continue
+            there = self._listener.count_publishers(name)
+            topic = self.topics.get(name)
+            if there == (0 if topic is None else topic.publishers_there):
+                continue
+            if len(type_names) > 1:
+                self._give_up(name, f"has several types, {', '.join(type_names)}")
+            else:
+                self._meet(name, type_names[0])
+
+    def take(self) -> list[RecordedMessage]:
+        """Return what has come, in the order in which it was received."""
+        horizon_ns = time.time_ns()
+        batch, self._held = self._held, []
+        for topic in self.topics.values():
+            self._take_all(topic, horizon_ns, batch)
+        batch.sort(key=lambda message: message.log_ns)
+        return batch
+
+    def _take_all(
+        self, topic: IncomingTopic, horizon_ns: int, batch: list[RecordedMessage]
+    ) -> None:
+        queue = topic.subscription.handle
+        with queue:  # keeps it from being destroyed
+            for _ in range(DEPTH):
+                taken = queue.take_message(topic.message_class, True)
+                if taken is None:
+                    return
+                topic.received += 1
+                if not topic.announced:
+                    self._meet(topic.name, topic.type_name)
+                    self._make_known(topic)
+                data, about = taken
+                number = about["publication_sequence_number"]
+                topic.continuity.take(number)
+                message = RecordedMessage(
+                    topic.name,
+                    data,
+                    about["received_timestamp"],
+                    about["source_timestamp"],
+                    number,
+                )
+                # What came while the queues are being emptied waits a turn, so that
+                # nothing of another topic that came before it is written after it.
+                late = message.log_ns > horizon_ns
+                (self._held if late else batch).append(message)
+
+    def _meet(self, name: str, type_name: str) -> None:
+        """Take in the publishers of a topic; subscribe if that is still to be done."""
+        infos = self._listener.get_publishers_info_by_topic(name)
+        offered = [info.qos_profile for info in infos]
+        topic = self.topics.get(name)
+        if topic is not None and not topic.received and offered:
+            qos = matching_qos(offered)
+            if not all(receives_from(topic.qos, each) for each in offered):
+                self._listener.destroy_subscription(topic.subscription)
+                topic = self._listen(name, type_name, qos)
+        if topic is None:
+            topic = self._listen(name, type_name, matching_qos(offered))
+        if topic is None:
+            return
+        topic.publishers_there = len(infos)
+        topic.gids |= {bytes(info.endpoint_gid) for info in infos}
+        topic.continuity.publishers = max(1, len(topic.gids))
+        if any(not receives_from(topic.qos, each) for each in offered):
+            self._warn(f"{name}: a publisher offers less than is asked for, unrecorded")
+        if infos and not topic.announced:
+            topic.offered_qos = [as_rosbag2(each) for each in offered]
+            topic.type_hash = str(infos[0].topic_type_hash)
+            self._make_known(topic)
+
+    def _make_known(self, topic: IncomingTopic) -> None:
+        if not topic.announced:
+            topic.announced = True
+            topic.offered_qos = topic.offered_qos or [as_rosbag2(topic.qos)]
+            self._announce(topic)
+
+    def _listen(
+        self, name: str, type_name: str, qos: QoSProfile
+    ) -> IncomingTopic | None:
+        try:
+            package, kind, message = type_name.split("/")
+            cls = getattr(importlib.import_module(f"{package}.{kind}"), message)
+            subscription = self._listener.create_subscription(
+                cls, name, lambda _: None, qos, raw=True
+            )
+        except (ImportError, AttributeError, ValueError) as error:
+            self._give_up(name, f"its type {type_name} is not installed ({error})")
+            return None
+        self.topics[name] = IncomingTopic(name, type_name, cls, qos, subscription)
+        return self.topics[name]
+
+    def _give_up(self, name: str, reason: str) -> None:
+        self._given_up.add(name)
+        self._warn(f"{name} is not recorded: {reason}")

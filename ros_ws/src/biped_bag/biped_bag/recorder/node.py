@@ -1,0 +1,247 @@
+"""The recorder on ROS: every topic of the graph into a bag in the layout of rosbag2.
+
+    python -m biped_bag.recorder.node --ros-args -p folder:=DIR [-p NAME:=VALUE ...]
+
+records until SIGINT or SIGTERM (settings.py lists the parameters). `log_time` is when
+the middleware received a message and `publish_time` when its publisher sent it, both
+wall clock, as rosbag2 of Jazzy has it; `sequence` is the publisher's own number.
+
+What failures do:
+    the folder is a bag already, cannot be written to, or the disk gets full: reported
+        in the log and in /diagnostics, then the recorder ends with exit status 4.
+    a wrong parameter: one line, exit status 2.
+    a topic whose type is not installed: a warning; the others are recorded.
+    kill -9: the bag has all but the last 0.2 s; see bag/writer.py for its state.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import rclpy
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from biped_bag.errors import BagError
+from biped_bag.recorder.episode_records import EpisodeRecords
+from biped_bag.recorder.intake import IncomingTopic, Intake
+from biped_bag.recorder.report import counts_record, counts_table
+from biped_bag.recorder.selection import selection_of
+from biped_bag.recorder.settings import RecorderSettings
+from biped_bag.recording import Recording
+from biped_bag.records import (
+    COUNTS_RECORD,
+    EPISODE_RECORD,
+    LOST_KEY,
+    RUN_RECORD,
+    STATE_KEY,
+)
+from biped_bag.writer import BagWriter, RecordedMessage, fresh_folder
+from biped_common.settings import SettingsError
+from biped_ros.guarded import GuardedNode
+from biped_ros.running import run_node
+from msgs_json import topics
+from msgs_json.topics import Topic
+
+NAME = "recorder_node"
+_TURN_S = 0.02
+_LOOK_PERIOD_S = 0.1
+# Long enough for the reason to get around before the node ends.
+_FAREWELL_S = 1.5
+
+
+class RecorderNode(GuardedNode):
+    """Listens to everything, writes it down, and understands next to nothing of it."""
+
+    def __init__(self, **options: Any) -> None:
+        """Begin the bag; a bag that cannot be begun is reported as a failure.
+
+        Args:
+            options: of `rclpy.node.Node`, such as `parameter_overrides`.
+
+        Raises:
+            SettingsError: a parameter is wrong.
+        """
+        super().__init__(NAME, **options)
+        self._settings = self.settings_from_parameters(RecorderSettings)
+        if not self._settings.folder:
+            raise SettingsError("folder", "", "must name the folder of the bag")
+        selection = selection_of(self._settings)
+        self._error = ""
+        self._recording: Recording | None = None
+        self._episodes = EpisodeRecords()
+        self._waiting: list[RecordedMessage] = []
+        self._listener = rclpy.create_node(
+            f"_{NAME}_intake",
+            context=self.context,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self._intake = Intake(self._listener, selection, self._announce, self._warn)
+        try:
+            self._recording = self._begun()
+        except (BagError, OSError) as error:
+            self._stop_recording(str(error))
+            return
+        if self._settings.expect_biped:
+            self._intake.expect(
+                topic for topic in vars(topics).values() if isinstance(topic, Topic)
+            )
+        self.create_timer(_TURN_S, self._turn)
+        self.create_timer(_LOOK_PERIOD_S, self._intake.look_around)
+
+    def close(self) -> None:
+        """Write what has come, finish the bag, and say what was received and lost."""
+        recording = self._recording
+        if recording is not None:
+            for _ in range(2):  # what came late in the first turn is there in the next
+                self._hear()
+            while self._waiting:
+                self._pass_on()
+            self._pass_on()  # the last walk's record
+            incoming = self._intake.topics.values()
+            recording.do(
+                lambda bag: bag.add_record(COUNTS_RECORD, counts_record(incoming, bag))
+            )
+            lost = sum(topic.continuity.lost for topic in incoming)
+            state = str(recording.error or "complete")
+            recording.close({STATE_KEY: state, LOST_KEY: str(lost)})
+            for line in counts_table(incoming, recording.writer):
+                self.get_logger().info(line)
+        self._listener.destroy_node()
+        if self._error:
+            # The last word: the supervisor tells it on.
+            print(f"recording stopped: {self._error}", file=sys.stderr)
+
+    def figures(self) -> dict[str, str]:
+        """Return how much has been received and lost."""
+        incoming = self._intake.topics.values()
+        return {
+            "messages received": str(sum(topic.received for topic in incoming)),
+            "messages lost": str(sum(topic.continuity.lost for topic in incoming)),
+            "topics": str(sum(topic.announced for topic in incoming)),
+        }
+
+    def _begun(self) -> Recording:
+        """Begin the bag.
+
+        Raises:
+            BagError: it cannot be begun.
+            OSError: the attachment cannot be read.
+            SettingsError: the run's data are no JSON object of texts.
+        """
+        settings = self._settings
+        asked_for = Path(settings.folder).absolute()
+        folder = fresh_folder(asked_for) if settings.number_if_taken else asked_for
+        run = _texts("run", settings.run)
+        attachment = Path(settings.attachment) if settings.attachment else None
+        if folder != asked_for:
+            # Begun in the middle of a run: the memory there is not the one begun with.
+            run, attachment = {**run, "continues": asked_for.name}, None
+        content = None if attachment is None else attachment.read_bytes()
+        writer = BagWriter(
+            folder,
+            max_file_bytes=(
+                settings.max_file_mb * 1_000_000 if settings.split == "size" else 0
+            ),
+            records={RUN_RECORD: run} if run else {},
+        )
+        if attachment is not None and content is not None:
+            writer.attach(
+                attachment.name, "application/octet-stream", content, time.time_ns()
+            )
+        self.get_logger().info(f"recording to {folder}")
+        return Recording(writer)
+
+    def _turn(self) -> None:
+        if self._recording is None or self._error:
+            return
+        if self._recording.error is not None:
+            self._stop_recording(str(self._recording.error))
+            return
+        self._hear()
+        self._pass_on()
+
+    def _hear(self) -> None:
+        messages = self._intake.take()
+        self._episodes.hear(messages)
+        self._waiting += messages
+
+    def _pass_on(self) -> None:
+        """Have messages written, up to the end of a walk at most.
+
+        What comes behind the end of a walk waits for one turn, so that the record of
+        the walk, for which the learner's status is needed, is written before it.
+        """
+        recording = self._recording
+        if recording is None:
+            return
+        record = self._episodes.record()
+        if record is not None:
+            settings, walks = self._settings, self._episodes.finished
+            recording.do(lambda bag: bag.add_record(EPISODE_RECORD, record))
+            if settings.split == "episode" and walks % settings.episodes_per_file == 0:
+                end_ns = int(record["last_log_time"])
+                recording.do(lambda bag: bag.split(end_ns))
+        ready = self._episodes.follow(self._waiting)
+        recording.put(self._waiting[:ready])
+        del self._waiting[:ready]
+
+    def _announce(self, topic: IncomingTopic) -> None:
+        if self._recording is not None:
+            self._recording.do(
+                lambda bag: bag.add_topic(
+                    topic.name,
+                    topic.type_name,
+                    topic.offered_qos,
+                    type_hash=topic.type_hash,
+                    latched=topic.latched,
+                )
+            )
+
+    def _warn(self, text: str) -> None:
+        self.get_logger().warning(text)
+        self.remark(DiagnosticStatus.WARN, text, text)
+
+    def _stop_recording(self, reason: str) -> None:
+        """Say why nothing is recorded any more, and end the node a little later."""
+        self._error = reason
+        self.get_logger().error(f"recording stopped: {reason}")
+        self._publish_diagnostics()
+        self.create_timer(_FAREWELL_S, self._give_up)
+
+    def _give_up(self) -> None:
+        self._publish_diagnostics()
+        self.failure = self._error
+
+    def _publish_diagnostics(self) -> None:
+        if self._error:
+            text = f"recording stopped: {self._error}"
+            self.remark(DiagnosticStatus.ERROR, "recording", text)
+        super()._publish_diagnostics()
+
+
+def _texts(key: str, text: str) -> dict[str, str]:
+    """Return a JSON object of texts.
+
+    Raises:
+        SettingsError: it is something else.
+    """
+    try:
+        return msgspec.json.decode(text, type=dict[str, str])
+    except msgspec.DecodeError as error:
+        raise SettingsError(
+            key, text, f"must be a JSON object of texts, {error}"
+        ) from None
+
+
+def main() -> int:
+    """Run the node as a process."""
+    return run_node(RecorderNode)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""The verbs of `biped bag`, one module each."""

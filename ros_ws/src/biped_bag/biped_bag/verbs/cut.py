@@ -1,0 +1,87 @@
+"""`biped bag cut`: a stretch of a bag as a bag of its own."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from biped_bag.cut import cut, stretch_of_episodes, stretch_of_time
+from biped_bag.reader import BagReader
+from biped_common.command_line import CommandError, add_json_option, print_json
+
+
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
+    """Add the verb."""
+    parser: argparse.ArgumentParser = verbs.add_parser(
+        "cut",
+        help="cut a stretch of time, or some episodes, out of a bag",
+        description="Write a stretch of a bag as a bag of its own. Latched messages "
+        "from before the stretch stand at its start.",
+    )
+    parser.add_argument("bag", type=Path, metavar="IN", help="folder or MCAP file")
+    parser.add_argument(
+        "out", type=Path, metavar="OUT", help="folder of the new bag; must not exist"
+    )
+    parser.add_argument(
+        "--start", type=_seconds, metavar="S", help="[s] from the bag's first message"
+    )
+    parser.add_argument(
+        "--end", type=_seconds, metavar="S", help="[s] from the bag's first message"
+    )
+    parser.add_argument(
+        "--episodes",
+        type=_episodes,
+        metavar="A-B",
+        help="these episodes, both included, instead of --start and --end",
+    )
+    parser.add_argument("--topics", nargs="+", metavar="TOPIC", help="keep these only")
+    add_json_option(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Cut and report."""
+    timed = options.start is not None or options.end is not None
+    if timed == (options.episodes is not None):
+        raise CommandError("cut: needs --start or --end or both, or else --episodes")
+    bag = BagReader(options.bag)
+    if timed:
+        stretch = stretch_of_time(bag, options.start, options.end)
+    else:
+        stretch = stretch_of_episodes(bag, *options.episodes)
+    done = cut(bag, options.out, stretch, options.topics)
+    if options.json:
+        print_json(
+            {
+                "out": str(options.out),
+                "messages": done.messages,
+                "latched_from_before": done.latched,
+                "start_ns": stretch.start_ns,
+                "end_ns": stretch.end_ns,
+            }
+        )
+    else:
+        print(
+            f"{done.messages} messages, and {done.latched} latched ones from before, "
+            f"in {options.out}"
+        )
+    return 0
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value) or value < 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be at least 0 s")
+    return value
+
+
+def _episodes(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d+)(?:-(\d+))?", text, flags=re.ASCII)
+    first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
+    if first > last:
+        raise argparse.ArgumentTypeError(f"{text}: must be A-B with A not above B")
+    return first, last

@@ -1,0 +1,99 @@
+"""`biped bag verify`: does a learner, given what was observed, answer as recorded?"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from biped_bag.errors import BagError
+from biped_bag.reader import BagReader
+from biped_bag.recorded_session import recorded_session
+from biped_bag.recorded_walks import WANTED
+from biped_bag.verify import verify
+from biped_bag.verify_report import Verdict, Verification, WalkCheck
+from biped_common.command_line import add_json_option, print_json
+from msgs_json.wire import MalformedMessageError
+
+_STATUS = {
+    Verdict.VERIFIED: 0,
+    Verdict.NOT_VERIFIED: 1,
+    Verdict.AS_FAR_AS_RECORDED: 3,
+}
+
+
+def add_parser(verbs: Any, _: Sequence[str]) -> None:
+    """Add the verb."""
+    parser: argparse.ArgumentParser = verbs.add_parser(
+        "verify",
+        help="let a learner answer the recorded observations again, and compare",
+        description="Give the recorded observations to a learner with the recorded "
+        "settings, seed and memory, and compare its corrections and results with the "
+        "recorded ones, bit for bit; compute ZMP error and T_err anew. Exit status 0 "
+        "when every correction was compared and all is the same, 1 when something "
+        "differs or could not be compared, 2 for wrong input, 3 when all that was "
+        "recorded is the same but the last walk is cut short.",
+    )
+    parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
+    parser.add_argument(
+        "--run-of",
+        type=Path,
+        metavar="ORIGINAL",
+        help="take settings, seed and memory from this bag; for recordings of a "
+        "replay, which cannot know them, and for cut bags",
+    )
+    add_json_option(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Verify and report."""
+    bag = BagReader(options.bag)
+    session = recorded_session(
+        bag if options.run_of is None else BagReader(options.run_of)
+    )
+    try:
+        found = verify(session, ((m.topic, m.data) for m in bag.messages(WANTED)))
+    except MalformedMessageError as error:
+        raise BagError(f"{options.bag}: {error}") from None
+    if options.json:
+        print_json(found.as_mapping())
+    else:
+        _print(found)
+    return _STATUS[found.verdict]
+
+
+def _print(found: Verification) -> None:
+    for walk in found.walks:
+        print(
+            f"walk {walk.number} (episode {walk.episode}, {_kind(walk)}): "
+            f"{walk.identical} of {walk.corrections} corrections identical"
+        )
+        if walk.first_difference is not None:
+            more = walk.differences - 1
+            print(
+                f"  differs: {walk.first_difference}"
+                + (f"; and {more} more" if more else "")
+            )
+        if walk.not_checked is not None:
+            print(f"  not checked: {walk.not_checked}")
+    costs = [walk.cost for walk in found.walks if walk.cost is not None]
+    for source in sorted({cost.source for cost in costs}):
+        chosen = [cost for cost in costs if cost.source == source]
+        worst = max(cost.t_err_deviation for cost in chosen)
+        print(f"T_err of {len(chosen)} walks from {source}: off by {worst:.1e} at most")
+        zmp_m = [c.zmp_error_deviation_m for c in chosen]
+        measured_m = [each for each in zmp_m if each is not None]
+        if measured_m:
+            print(f"ZMP error: off by {1000 * max(measured_m):.1e} mm at most")
+    print(
+        f"{found.verdict}: {found.identical} of {found.corrections} corrections "
+        f"identical, {found.differences} differences"
+    )
+
+
+def _kind(walk: WalkCheck) -> str:
+    if walk.learning is None:
+        return "cut short" if walk.cut_short else "not begun"
+    return "learning" if walk.learning else "frozen"

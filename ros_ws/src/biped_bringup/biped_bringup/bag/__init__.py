@@ -1,1 +1,0 @@
-"""Bags: recordings of the graph as MCAP files in the layout of rosbag2."""

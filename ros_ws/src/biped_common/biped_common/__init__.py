@@ -1,0 +1,1 @@
+"""What all packages share: settings, integer time, seeds, files, errors, commands."""

@@ -1,0 +1,139 @@
+"""Templates of the graph's standard messages, and what their numbers mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from geometry_msgs.msg import Vector3Stamped
+from numpy.typing import NDArray
+from rclpy.serialization import deserialize_message
+
+from biped_common.timing import CONTROL_PERIOD_US
+from biped_ros.cdr import MessageTemplate, read_stamp
+from msgs_json.segment import WaistSegment
+from msgs_json.wire import MalformedMessageError, RefusedMessageError
+
+WORLD_FRAME = "world"
+# One transform each per control tick; only translations are used. `phase` holds flags:
+# x 1 = right support leg, y 1 = double support, z = single supports begun. `extent`
+# is the same in all rows: x = first control tick of the walk, y = ticks to be walked
+# before the next observation; rows beyond them are look-ahead.
+SEGMENT_PARTS = (
+    "waist",
+    "left_foot",
+    "right_foot",
+    "zmp_reference",
+    "phase",
+    "extent",
+)
+_AXES = 3
+_NO_ROTATION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
+
+
+def clock_template() -> MessageTemplate:
+    """Return /clock."""
+    return MessageTemplate(stamped=True).finished()
+
+
+def joint_state_template(names: Sequence[str], *, with_effort: bool) -> MessageTemplate:
+    """Return joint states: positions, velocities and, if asked for, efforts."""
+    template = MessageTemplate(stamped=True).text("").integer(len(names))
+    for name in names:
+        template.text(name)
+    for present in (True, True, with_effort):
+        template.integer(len(names) if present else 0)
+        for _ in names if present else ():
+            template.value()
+    return template.finished()
+
+
+def point_template() -> MessageTemplate:
+    """Return a point on the floor: x and y."""
+    template = MessageTemplate(stamped=True).text(WORLD_FRAME)
+    return template.value().value().constant(0.0).finished()
+
+
+def correction_template(learner: str) -> MessageTemplate:
+    """Return a correction (dx, dy) of the learner of this name."""
+    template = MessageTemplate(stamped=True).text(learner)
+    return template.value().value().constant(0.0).finished()
+
+
+def correction_of(message: bytes) -> tuple[str, int, NDArray[np.float64]]:
+    """Return learner, clock ticks and (dx, dy) [m] of a correction.
+
+    Raises:
+        MalformedMessageError: not a correction, or its time lies between two ticks.
+    """
+    try:
+        correction = deserialize_message(message, Vector3Stamped)
+    except Exception as error:
+        raise MalformedMessageError(f"Vector3Stamped: {error}") from None
+    ticks = read_stamp(message, 4)
+    if ticks is None:
+        raise MalformedMessageError("Vector3Stamped: its stamp is not a control tick")
+    vector = correction.vector
+    return correction.header.frame_id, ticks, np.array([vector.x, vector.y])
+
+
+def segment_template(rows: int) -> MessageTemplate:
+    """Return a waist segment of so many control ticks."""
+    template = MessageTemplate(stamped=True).text(WORLD_FRAME)
+    template.integer(len(SEGMENT_PARTS))
+    for part in SEGMENT_PARTS:
+        template.text(part)
+    template.integer(rows)
+    for row in range(rows):
+        template.integer(len(SEGMENT_PARTS))
+        for _ in SEGMENT_PARTS:
+            template.value().value().value()
+            for component in _NO_ROTATION:
+                template.constant(component)
+        # Neither velocities nor accelerations; time from start.
+        template.integer(0).integer(0).integer(0)
+        template.integer(row * CONTROL_PERIOD_US * 1000)
+    return template.finished()
+
+
+def segment_values(segment: WaistSegment) -> NDArray[np.float64]:
+    """Return the (rows, parts, 3) numbers of a segment's message."""
+    values = np.zeros((len(segment.waist), len(SEGMENT_PARTS), _AXES))
+    values[:, 0] = segment.waist
+    values[:, 1] = segment.left_foot
+    values[:, 2] = segment.right_foot
+    values[:, 3, :2] = segment.zmp_reference
+    values[:, 4, 0] = segment.right_support
+    values[:, 4, 1] = segment.double_support
+    values[:, 4, 2] = segment.step_index
+    values[:, 5, 0] = segment.first_tick
+    values[:, 5, 1] = segment.n_ticks
+    return values
+
+
+def segment_of(values: NDArray[np.float64]) -> WaistSegment:
+    """Return the segment of a message's numbers, the inverse of `segment_values`.
+
+    Raises:
+        RefusedMessageError: a number is not finite, or the extent makes no sense.
+    """
+    if not np.isfinite(values).all():
+        raise RefusedMessageError("segment with a number that is not finite")
+    cells = values.reshape(-1, len(SEGMENT_PARTS), _AXES)
+    first_tick, n_ticks = (int(n) for n in cells[0, 5, :2])
+    if first_tick < 0 or not 0 <= n_ticks < len(cells) + (n_ticks == 0):
+        raise RefusedMessageError(
+            f"segment of {len(cells)} rows from tick {first_tick}: "
+            f"{n_ticks} ticks cannot be walked on it"
+        )
+    return WaistSegment(
+        first_tick=first_tick,
+        n_ticks=n_ticks,
+        waist=np.ascontiguousarray(cells[:, 0]),
+        left_foot=np.ascontiguousarray(cells[:, 1]),
+        right_foot=np.ascontiguousarray(cells[:, 2]),
+        zmp_reference=np.ascontiguousarray(cells[:, 3, :2]),
+        right_support=cells[:, 4, 0] == 1.0,
+        double_support=cells[:, 4, 1] == 1.0,
+        step_index=cells[:, 4, 2].astype(np.int64),
+    )

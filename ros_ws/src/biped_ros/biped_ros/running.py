@@ -1,0 +1,77 @@
+"""Run a node as a process, from its start to an orderly end."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.experimental import EventsExecutor
+from rclpy.task import Future
+
+from biped_common.settings import SettingsError
+from biped_ros.guarded import GuardedNode
+
+WRONG_INPUT = 2
+REFUSED = 4
+# The events executor cannot be interrupted in an endless spin, so it spins in turns.
+_TURN_S = 0.2
+
+
+def run_node(
+    make: Callable[[], GuardedNode], wrong_input: tuple[type[Exception], ...] = ()
+) -> int:
+    """Make a node, spin it until SIGINT or SIGTERM, and close it.
+
+    Args:
+        make: makes the node.
+        wrong_input: errors of the node's making, besides wrong parameters, that are
+            the user's and not the program's.
+
+    Returns:
+        The exit status: 0 after an orderly end, 2 for wrong input, 4 when the node gave
+        up.
+    """
+    # Signals end the loop below, not the middle of a callback.
+    try:
+        rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        # A parameter file that is not there or is no YAML, or a word out of place.
+        print(f"wrong arguments: {' '.join(str(error).split())}", file=sys.stderr)
+        return WRONG_INPUT
+    stops: list[int] = []
+
+    def stop(number: int, _: Any) -> None:
+        stops.append(number)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    node = None
+    try:
+        node = make()
+        executor = EventsExecutor()
+        executor.add_node(node)
+        never: Future = Future()
+        while not stops and node.failure is None:
+            executor.spin_until_future_complete(never, timeout_sec=_TURN_S)
+        if node.failure is not None:
+            print(f"{node.get_name()} gives up: {node.failure}", file=sys.stderr)
+            return REFUSED
+        return 0
+    except SettingsError as error:
+        print(f"wrong parameter: {error}", file=sys.stderr)
+        return WRONG_INPUT
+    except wrong_input as error:
+        print(f"cannot start: {error}", file=sys.stderr)
+        return WRONG_INPUT
+    except ExternalShutdownException:
+        return 0
+    finally:
+        if node is not None:
+            node.close()
+            node.await_acknowledgements()
+            node.destroy_node()
+        rclpy.try_shutdown()
