@@ -53,6 +53,11 @@ class TrainingProgress(LiveDisplay):
         run = self._run
         schedule, agent, tally = run.learner.schedule, run.learner.agent, run.tally
         ticks = tally.simulated_ticks + tally.evaluation_ticks - self._ticks_before
+        replayed = (
+            f"replayed {100 * run.walker.ticks.replayed_share:.0f} %"
+            if run.replay_off is None
+            else "replay off"
+        )
         rate = seconds(ticks) / max(time.monotonic() - self._since, 1e-9)
         return (
             f"target {seconds(schedule.target_ticks):5.2f} s"
@@ -61,5 +66,5 @@ class TrainingProgress(LiveDisplay):
             f"  episodes {run.episodes}  survival {100 * run.log.survival():.0f} %"
             f"  states {agent.basis_states} (fixed {agent.fixed_states}, "
             f"penalty {agent.penalty_states})"
-            f"  {rate:.1f} simulated s/s"
+            f"  {replayed}  {rate:.1f} simulated s/s"
         )
