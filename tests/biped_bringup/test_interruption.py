@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.biped_bringup.conftest import Outcome
+from tests.conftest import Outcome
 from tests.biped_bringup.runs import Record, quick, record
 
 from biped_bringup.cli.learn import INTERRUPTED

@@ -8,7 +8,7 @@ from tests.biped_bringup.runs import SHORT, quick
 
 from biped_bringup.walker import Walker
 from biped_bringup.zmp_figure import ZmpTrace, draw_zmp
-from learner_node.walking.frozen import FrozenWalk, static_walk
+from learner_node.walking.walks import FrozenWalk, static_walk
 
 SETTINGS = quick(*SHORT)
 

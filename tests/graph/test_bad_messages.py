@@ -41,7 +41,7 @@ def learned(domain, disturb=None):
             assert graph.spin_until(lambda: session.episodes >= 1, TIMEOUT_S)
             disturb(graph)
         assert graph.spin_until(lambda: session.episodes >= EPISODES, TIMEOUT_S)
-        return session.learner.memory_sha256(), session.tally.trajectories_sha256
+        return session.memory_sha256(), session.tally.trajectories_sha256
 
 
 @pytest.fixture(scope="module")

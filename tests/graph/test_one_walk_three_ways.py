@@ -20,7 +20,7 @@ def in_process():
     run = TrainingRun(load_settings("quick"), SEED)
     run.run(EPISODES, False, lambda _: True)
     run.close()
-    return run.learner.memory_sha256(), run.tally.trajectories_sha256
+    return run.session.memory_sha256(), run.tally.trajectories_sha256
 
 
 def test_one_executor_learns_the_same(domain, in_process):
@@ -34,7 +34,7 @@ def test_one_executor_learns_the_same(domain, in_process):
     with OneExecutor(parameters, domain) as graph:
         session = graph.learner.session
         assert graph.spin_until(lambda: session.episodes == EPISODES, TIMEOUT_S)
-        hashes = session.learner.memory_sha256(), session.tally.trajectories_sha256
+        hashes = session.memory_sha256(), session.tally.trajectories_sha256
     assert hashes == in_process
 
 
@@ -53,4 +53,4 @@ def test_three_processes_learn_the_same(processes, tmp_path, in_process):
             run = TrainingRun.load(file)
             run.close()
     assert run is not None
-    assert (run.learner.memory_sha256(), run.tally.trajectories_sha256) == in_process
+    assert (run.session.memory_sha256(), run.tally.trajectories_sha256) == in_process

@@ -4,21 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
-from learner_node.xol.settings import XolSettings
-
-INPUT_NAMES = (
-    "right_support",
-    "double_support",
-    "waist_x",
-    "waist_y",
-    "zmp_error_x",
-    "zmp_error_y",
-    "waist_acceleration_x",
-    "waist_acceleration_y",
-)
-N_DISCRETE = 2
-N_CONTINUOUS = len(INPUT_NAMES) - N_DISCRETE
+from biped_common.settings import check_ranges, section, setting
+from learner_node.methods import MethodSettings
 
 
 @dataclass(frozen=True)
@@ -64,7 +51,7 @@ class InputSettings:
 
     @property
     def radii(self) -> tuple[float, ...]:
-        """One width per continuous input, in the order of INPUT_NAMES."""
+        """One width per continuous input, in the order of the inputs."""
         return (
             (self.waist_radius_m,) * 2
             + (self.zmp_error_radius_m,) * 2
@@ -134,10 +121,9 @@ class ScheduleSettings:
 
 
 @dataclass(frozen=True)
-class LearnerSettings:
-    """All of the learner of the walking task."""
+class LearnerSettings(MethodSettings):
+    """All of the learner of the walking task: the method, and the task."""
 
-    xol: XolSettings = section(XolSettings)
     action: ActionSettings = section(ActionSettings)
     inputs: InputSettings = section(InputSettings)
     cost: CostSettings = section(CostSettings)
@@ -145,10 +131,5 @@ class LearnerSettings:
     schedule: ScheduleSettings = section(ScheduleSettings)
 
     def __post_init__(self) -> None:
-        """Refuse radii in two places: they are set in `inputs`, by name and unit."""
-        if self.xol.states.radii:
-            raise SettingsError(
-                "xol.states.radii",
-                list(self.xol.states.radii),
-                "must be empty here; the widths are set in the section inputs",
-            )
+        """Refuse values out of range."""
+        check_ranges(self)

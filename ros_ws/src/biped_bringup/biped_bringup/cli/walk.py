@@ -25,7 +25,7 @@ from biped_common.command_line import (
     print_json,
 )
 from biped_common.timing import seconds
-from learner_node.walking.frozen import greedy_walk, static_walk
+from learner_node.walking.walks import greedy_walk, static_walk
 from msgs_json.episode_result import EpisodeResult
 
 
@@ -95,13 +95,12 @@ def _check_figure(path: Path) -> None:
 
 
 def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
-    agent = None
+    learned = None
     if options.memory is not None:
         if options.preset is not None:
             raise CommandError("--preset: a memory brings its own settings")
         learned = TrainingRun.load(options.memory)
         learned.close()
-        agent = learned.learner.agent
         settings = changed_settings(learned.settings, options.config, options.changes)
         if settings.learner != learned.settings.learner:
             raise CommandError(
@@ -113,8 +112,11 @@ def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
     trace = ZmpTrace()
     walker = Walker(settings, np.random.default_rng(options.seed), trace.add)
     try:
-        if agent is not None:
-            responder = greedy_walk(settings.learner, walker.walk_ticks, agent)
+        if learned is not None:
+            session = learned.session
+            responder = greedy_walk(
+                settings.learner, walker.walk_ticks, session.learner, session.task
+            )
         else:
             responder = static_walk(settings.learner, walker.walk_ticks)
         result = walker.walk(responder)

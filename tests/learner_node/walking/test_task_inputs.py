@@ -4,13 +4,8 @@ import numpy as np
 import pytest
 from tests.learner_node.walking.observations import observation, phase
 
-from learner_node.walking.inputs import sensory_input
-from learner_node.walking.settings import (
-    INPUT_NAMES,
-    N_CONTINUOUS,
-    N_DISCRETE,
-    InputSettings,
-)
+from learner_node.walking.settings import InputSettings
+from learner_node.walking.task import INPUT_NAMES, N_DISCRETE, sensory_input
 
 TELLING = observation(
     waist_in_support_foot_m=(0.1, 0.2),
@@ -20,7 +15,11 @@ TELLING = observation(
 
 
 def test_there_are_eight_inputs_two_of_them_discrete():
-    assert (len(sensory_input(TELLING)), N_DISCRETE, N_CONTINUOUS) == (8, 2, 6)
+    assert (
+        len(sensory_input(TELLING)),
+        N_DISCRETE,
+        (len(INPUT_NAMES) - N_DISCRETE),
+    ) == (8, 2, 6)
 
 
 def test_continuous_inputs_come_in_the_order_of_the_paper_in_si_units():

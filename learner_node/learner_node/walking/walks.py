@@ -1,4 +1,8 @@
-"""Walks without learning: greedy from a memory, or the static walk uncorrected."""
+"""Who answers a robot's observations: a learner, its frozen memory, or nobody.
+
+All answer with the correction for the coming learning tick, or with the result where
+the walk has failed or reached its target time.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +12,47 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import TICKS_PER_LEARNING_TICK
-from learner_node.walking.actions import NO_CORRECTION_M, corrections_m
+from learner_node.learner import Learner, tell
 from learner_node.walking.cost import CostIntegral
-from learner_node.walking.inputs import sensory_input
 from learner_node.walking.settings import LearnerSettings
-from learner_node.xol.agent import XolAgent
+from learner_node.walking.task import NO_CORRECTION_M, WalkTask, sensory_input
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 
 Decide = Callable[[Observation], NDArray[np.float64]]
+
+
+class LearningWalk:
+    """Leads a learner through the task."""
+
+    def __init__(self, task: WalkTask, learner: Learner) -> None:
+        """Prepare for walk after walk."""
+        self._task = task
+        self._learner = learner
+        self._held_m = NO_CORRECTION_M
+
+    def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
+        """Learn from an observation; return the (2,) correction [m] or the result.
+
+        An observation at control tick 0 begins an episode.
+        """
+        task, learner = self._task, self._learner
+        begins = observation.control_tick == 0
+        if begins:
+            task.begin()
+        end = task.end(observation)
+        if end is not None:
+            tell(learner, end.outcome)
+            return end.result
+        if task.decides(observation):
+            inputs = sensory_input(observation)
+            if begins:
+                learner.begin_episode(inputs)
+            else:
+                learner.advance(inputs)
+            self._held_m = task.correction_m(learner.choose())
+        return self._held_m
 
 
 class FrozenWalk:
@@ -55,17 +90,16 @@ class FrozenWalk:
 
 
 def greedy_walk(
-    settings: LearnerSettings, target_ticks: int, agent: XolAgent
+    settings: LearnerSettings, target_ticks: int, learner: Learner, task: WalkTask
 ) -> FrozenWalk:
-    """Return the frozen greedy walk of what an agent has learned.
+    """Return the frozen greedy walk of what a learner has learned.
 
-    Where the agent knows no state of the present phase, the walk is not corrected.
+    Where it knows no state of the present phase, the walk is not corrected.
     """
-    alternatives_m = corrections_m(settings.action)
 
     def decide(observation: Observation) -> NDArray[np.float64]:
-        chosen = agent.greedy(sensory_input(observation))
-        return NO_CORRECTION_M if chosen is None else alternatives_m[chosen]
+        chosen = learner.greedy(sensory_input(observation))
+        return NO_CORRECTION_M if chosen is None else task.correction_m(chosen)
 
     return FrozenWalk(settings, target_ticks, decide)
 

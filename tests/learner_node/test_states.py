@@ -5,14 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from learner_node.xol.settings import StateSettings
-from learner_node.xol.states import NO_STATE, BasisStates
+from learner_node.problem import ActionSpace, Problem
+from learner_node.states import NO_STATE, BasisStates, StateSettings
 
 KINDS = ("gaussian", "uniform")
 
 
 def basis_states(n_discrete=0, radii=(1.0,), **changes):
-    return BasisStates(StateSettings(radii=radii, **changes), n_discrete, len(radii))
+    problem = Problem(n_discrete, radii, ActionSpace((2,)), (1.0, 1.0))
+    return BasisStates(StateSettings(**changes), problem)
 
 
 def find(states, *inputs, create=True):
@@ -193,6 +194,7 @@ def test_a_forgotten_state_is_made_anew():
     assert find(states, 0.0) == 1
 
 
-def test_radii_that_do_not_fit_the_inputs_are_refused():
-    with pytest.raises(ValueError, match=r"radii: 1 given, .* that is 3"):
-        BasisStates(StateSettings(radii=(1.0,)), 0, 3)
+@pytest.mark.parametrize("radius", (0.0, -1.0, math.nan, math.inf))
+def test_radii_that_are_no_widths_are_refused(radius):
+    with pytest.raises(ValueError, match="radii = "):
+        basis_states(radii=(1.0, radius))

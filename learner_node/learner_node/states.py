@@ -8,19 +8,49 @@ The uniform grid of [18] is the alternative.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from learner_node.xol.settings import StateSettings
+from biped_common.settings import check_ranges, setting
+from learner_node.memory import Arrays
+from learner_node.problem import Problem
 
 NO_STATE = -1
 _FIRST_CAPACITY = 64
 _BLOCK = 512
 # Two centres of one grid cell differ by rounding only.
 _SAME_CELL_SQUARED_DISTANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class StateSettings:
+    """How continuous inputs become discrete states (Section 2, [12, 18])."""
+
+    basis: str = setting(
+        "gaussian",
+        "",
+        "shape of the states: Gaussian bumps made where needed, or a uniform grid",
+        choices=("gaussian", "uniform"),
+    )
+    activation_threshold: float = setting(
+        math.exp(-0.5),
+        "",
+        "a new Gaussian state is made where no existing one is this active",
+        above=0.0,
+        upper=1.0,
+    )
+    life_episodes: int = setting(
+        100, "episodes", "an unrewarded state unvisited this long is forgotten", lower=1
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range."""
+        check_ranges(self)
 
 
 @njit(
@@ -69,25 +99,16 @@ def nearest_state(
 class BasisStates:
     """The set of discrete states S = {s_k}, growing where inputs are new."""
 
-    def __init__(
-        self, settings: StateSettings, n_discrete: int, n_continuous: int
-    ) -> None:
+    def __init__(self, settings: StateSettings, problem: Problem) -> None:
         """Start without any state.
 
         Args:
-            settings: kind, radii, threshold and life span.
-            n_discrete: number of leading inputs that are discrete.
-            n_continuous: number of inputs after them; one radius each.
+            settings: kind, threshold and life span.
+            problem: number of discrete inputs, and widths of the continuous ones.
         """
         self.settings = settings
-        self.n_discrete = n_discrete
-        self.n_continuous = n_continuous
-        self._radii = np.asarray(settings.radii, dtype=np.float64)
-        if self._radii.shape != (n_continuous,):
-            raise ValueError(
-                f"radii: {len(self._radii)} given, one per continuous input needed, "
-                f"that is {n_continuous}"
-            )
+        self.n_discrete, n_continuous = problem.n_discrete, len(problem.radii)
+        self._radii = np.array(problem.radii, dtype=np.float64)
         # phi = exp(-d^2/2) falls below the threshold outside this distance.
         self._gaussian = settings.basis == "gaussian"
         self._reach_squared = (
@@ -97,7 +118,7 @@ class BasisStates:
         )
         self.count = 0
         self.life = np.zeros(_FIRST_CAPACITY, dtype=np.int64)
-        self._discrete = np.zeros((_FIRST_CAPACITY, n_discrete))
+        self._discrete = np.zeros((_FIRST_CAPACITY, self.n_discrete))
         self._columns = np.zeros((n_continuous, _FIRST_CAPACITY))
         self._groups = np.zeros(_FIRST_CAPACITY, dtype=np.int64)
         self._group_of: dict[bytes, int] = {}
@@ -144,36 +165,29 @@ class BasisStates:
             self.life[k] = self.settings.life_episodes
         return int(k)
 
-    def replace(
-        self,
-        discrete: NDArray[np.float64],
-        centers: NDArray[np.float64],
-        life: NDArray[np.int64],
-    ) -> None:
-        """Take over other states, all of them.
+    def memory(self) -> Arrays:
+        """Return views of the states, for a learner's memory."""
+        return {
+            "state_discrete": self.discrete,
+            "state_centers": self.centers,
+            "state_life": self.life[: self.count],
+        }
 
-        Args:
-            discrete: (count, n_discrete) discrete inputs.
-            centers: (count, n_continuous) centres in units of the radii.
-            life: (count,) episodes left.
-        """
+    def restore(self, memory: Mapping[str, NDArray[Any]]) -> None:
+        """Take over the states of a memory that fits, all of them."""
         self.count = 0
-        for row, center in zip(discrete, centers, strict=True):
-            self._append(row, center)
-        self.life[: self.count] = life
+        for discrete, center in zip(
+            memory["state_discrete"], memory["state_centers"], strict=True
+        ):
+            self._append(discrete, center)
+        self.life[: self.count] = memory["state_life"]
 
-    def reserve(self, capacity: int) -> None:
-        """Make room for at least `capacity` states."""
+    def _reserve(self, capacity: int) -> None:
         while self.capacity < capacity:
             self.life = doubled(self.life)
             self._groups = doubled(self._groups)
             self._discrete = doubled(self._discrete)
             self._columns = doubled(self._columns.T).T.copy()
-
-    def bytes_per_state(self) -> int:
-        """Return the memory of one state."""
-        arrays = (self.life, self._groups, self._discrete, self._columns)
-        return sum(array.nbytes for array in arrays) // self.capacity
 
     def age(self, kept: NDArray[np.bool_]) -> NDArray[np.int64] | None:
         """Let every state live one episode less and forget those whose life is over.
@@ -199,7 +213,7 @@ class BasisStates:
         return remaining
 
     def _append(self, discrete: NDArray[np.float64], point: NDArray[np.float64]) -> int:
-        self.reserve(self.count + 1)
+        self._reserve(self.count + 1)
         k = self.count
         key = discrete.tobytes()
         self._groups[k] = self._group_of.setdefault(key, len(self._group_of))

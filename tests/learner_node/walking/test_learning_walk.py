@@ -1,4 +1,4 @@
-"""The learner of the walk, fed with observations made by hand (Section 4)."""
+"""A learner led through the task of walking, by observations made by hand."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -8,11 +8,13 @@ import pytest
 from tests.learner_node.walking.observations import observation, ticks_until
 from tests.learner_node.walking.small_settings import SETTINGS
 
-from learner_node.walking.learner import WalkLearner
 from learner_node.walking.settings import (
     ActionSettings,
     RewardSettings,
 )
+from learner_node.walking.task import WalkTask
+from learner_node.walking.walks import LearningWalk
+from learner_node.xol.agent import XolAgent
 from learner_node.xol.settings import FixedModeSettings
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
@@ -22,9 +24,19 @@ WALK_TICKS = 62
 TARGETS = (30, 50, 62)
 
 
+class Lesson:
+    """XoL, the task, and the walk that joins them."""
+
+    def __init__(self, settings):
+        self.task = WalkTask(settings, WALK_TICKS)
+        self.agent = XolAgent(
+            settings.xol, settings.states, self.task.problem, np.random.default_rng(0)
+        )
+        self.respond = LearningWalk(self.task, self.agent).respond
+
+
 def new_learner(**sections):
-    settings = replace(SETTINGS, **sections)
-    return WalkLearner(settings, WALK_TICKS, np.random.default_rng(0))
+    return Lesson(replace(SETTINGS, **sections))
 
 
 def walk(learner, end=None, cause=None, t_err=0.0):
@@ -33,7 +45,7 @@ def walk(learner, end=None, cause=None, t_err=0.0):
     Returns:
         (answers before the end, the answer to the last observation).
     """
-    end = learner.schedule.target_ticks if end is None else end
+    end = learner.task.schedule.target_ticks if end is None else end
     answers = []
     for tick in ticks_until(end):
         last = tick == end
@@ -58,14 +70,14 @@ def result_of(learner, **walk_changes):
 def rewards_counted(learner):
     """TUC of all states."""
     agent = learner.agent
-    return agent.rules.rewards[: agent.basis_states].tolist()
+    return agent.rules.rewards[: agent.states.count].tolist()
 
 
 # -- corrections ----------------------------------------------------------------------
 
 
 def test_the_schedule_of_these_tests():
-    assert new_learner().schedule.targets == TARGETS
+    assert new_learner().task.schedule.targets == TARGETS
 
 
 def test_every_observation_before_the_end_is_answered_with_a_correction():
@@ -75,7 +87,7 @@ def test_every_observation_before_the_end_is_answered_with_a_correction():
 
 def test_corrections_are_among_the_alternatives():
     learner = new_learner()
-    learner.schedule.subtask = 2
+    learner.task.schedule.subtask = 2
     answers, _ = walk(learner)
     steps = np.array(answers) / 0.012
     assert np.abs(steps).max() <= 2.0
@@ -90,7 +102,7 @@ def test_all_alternatives_are_tried():
 
 def test_a_decision_is_held_for_the_set_number_of_ticks():
     learner = new_learner(action=ActionSettings(alternatives=1001, hold_ticks=3))
-    learner.schedule.subtask = 2
+    learner.task.schedule.subtask = 2
     answers, _ = walk(learner)  # at ticks 0, 10, ..., 60
     changes = [not np.array_equal(a, b) for a, b in pairwise(answers)]
     assert changes == [False, False, True, False, False, True]
@@ -98,9 +110,9 @@ def test_a_decision_is_held_for_the_set_number_of_ticks():
 
 def test_only_ticks_of_decision_make_states():
     learner = new_learner(action=ActionSettings(hold_ticks=3))
-    learner.schedule.subtask = 2
+    learner.task.schedule.subtask = 2
     walk(learner)
-    assert learner.agent.basis_states == 3
+    assert learner.agent.states.count == 3
 
 
 def test_learning_is_the_same_for_the_same_seed():
@@ -205,7 +217,7 @@ def test_failures_do_not_extend_the_target_time():
     learner = new_learner()
     for _ in range(5):
         result_of(learner, end=20, cause=EndCause.ZMP_ERROR)
-    assert learner.schedule.target_ticks == 30
+    assert learner.task.schedule.target_ticks == 30
 
 
 def test_each_subtask_begins_without_an_estimate():
@@ -242,7 +254,7 @@ def fixed_after_the_first_subtask(strategy):
     fixed = []
     for _ in range(2):
         result_of(learner, t_err=2.0)
-        fixed.append(learner.agent.fixed_states)
+        fixed.append(learner.agent.figures()["fixed_states"])
     return fixed
 
 
@@ -354,36 +366,3 @@ def test_a_walk_broken_off_is_not_learned_from():
     learner.respond(observation(0, waist_in_support_foot_m=(500.0, 0.0)))
     walk(learner)
     assert learner.agent.rules.rewards[0] == 0
-
-
-# -- interruption ---------------------------------------------------------------------
-
-
-def mixed_results(learner, rng, walks):
-    """Results of walks that fail or succeed at random."""
-    results = []
-    for _ in range(walks):
-        if rng.random() < 0.4:
-            results.append(result_of(learner, end=20, cause=EndCause.ZMP_ERROR))
-        else:
-            results.append(result_of(learner, t_err=rng.uniform(1.0, 2.0)))
-    return results
-
-
-@pytest.mark.parametrize("walks_before", range(6))
-def test_a_restored_learner_goes_on_as_if_never_interrupted(walks_before):
-    learner, restored = new_learner(), new_learner()
-    mixed_results(learner, np.random.default_rng(1), walks_before)
-    restored.restore(learner.progress(), learner.agent.memory())
-    first, second = (
-        mixed_results(each, np.random.default_rng(2), walks=12)
-        for each in (learner, restored)
-    )
-    assert first == second
-    assert learner.memory_sha256() == restored.memory_sha256()
-
-
-def test_progress_of_another_schedule_is_refused():
-    progress = {**new_learner().progress(), "subtask": len(TARGETS)}
-    with pytest.raises(ValueError, match="subtask 3 of 3"):
-        new_learner().restore(progress, new_learner().agent.memory())
