@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from biped_common.timing import seconds
-from biped_description import kinematics
-from biped_description.joints import TORQUE_LIMIT
+from biped_description import kernels
+from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
@@ -34,8 +34,8 @@ from sim_node.world import World
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
 _IK_END_CAUSE = {
-    kinematics.UNREACHABLE: EndCause.IK_UNREACHABLE,
-    kinematics.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
+    kernels.UNREACHABLE: EndCause.IK_UNREACHABLE,
+    kernels.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
 }
 
 
@@ -76,6 +76,7 @@ class SimulatedBiped:
 
     def __init__(
         self,
+        robot: Robot,
         settings: SimSettings,
         start: WaistSegment,
         rng: np.random.Generator,
@@ -85,6 +86,7 @@ class SimulatedBiped:
         """Build the world and let the robot settle in its starting pose.
 
         Args:
+            robot: that is simulated.
             settings: limits and disturbances.
             start: a segment whose row 0 is the pose in which walks start.
             rng: source of all disturbances.
@@ -92,14 +94,15 @@ class SimulatedBiped:
             name: of this simulation's run, for observations.
         """
         self._name = name
+        self.robot = robot
         self.settings = settings
         self.on_tick = on_tick
         self._rng = rng
         self._start = start
-        self.world = World()
+        self.world = World(robot)
         self.world.set_friction(settings.disturbances.friction)
         self.world.set_torque_limits(
-            TORQUE_LIMIT * settings.disturbances.torque_limit_factor
+            robot.torque_limit_nm * settings.disturbances.torque_limit_factor
         )
         sizes = settings.disturbances
         self._noise_sizes = np.array(
@@ -109,7 +112,11 @@ class SimulatedBiped:
                 [sizes.acceleration_noise_m_s2],
             ]
         )
-        self._limit_watch = LimitWatch(settings.limits, self.world.torque_limits)
+        self._limit_watch = LimitWatch(
+            settings.limits,
+            robot.settings.velocity_limit_rad_s,
+            self.world.torque_limits,
+        )
         self._references = standing(start)
         self._snapshots: set[BipedSnapshot] = set()
         # Measured since the last observation.
@@ -194,7 +201,7 @@ class SimulatedBiped:
             )
         if segment.n_ticks < 1:
             raise ValueError("segment without a tick")
-        references, status = solve(segment, rows)
+        references, status = solve(self.robot, segment, rows)
         if references.rows <= segment.n_ticks:
             watch.end_cause = _IK_END_CAUSE[status]
             return
@@ -365,7 +372,7 @@ class SimulatedBiped:
 
     def _settle(self) -> None:
         pose = (self._start.waist[:1], self._start.left_foot[:1], self._start.right_foot[:1])  # fmt: skip  # noqa: E501
-        q = kinematics.leg_joint_positions(*pose)[0]
+        q = self.robot.leg_joint_positions(*pose)[0]
         self.world.place(pose[0][0], q)
         still = [0.0] * len(q)
         for _ in range(_SETTLING_TICKS):
