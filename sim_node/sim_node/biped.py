@@ -33,6 +33,7 @@ from sim_node.world import World
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
+_NO_NOISE = [[0.0, 0.0]] * 3
 _IK_END_CAUSE = {
     kernels.UNREACHABLE: EndCause.IK_UNREACHABLE,
     kernels.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
@@ -89,7 +90,7 @@ class SimulatedBiped:
             robot: that is simulated.
             settings: limits and disturbances.
             start: a segment whose row 0 is the pose in which walks start.
-            rng: source of all disturbances.
+            rng: source of all disturbances; nothing is drawn where none is random.
             on_tick: called after every control tick.
             name: of this simulation's run, for observations.
         """
@@ -140,9 +141,10 @@ class SimulatedBiped:
         self.world.check_open()
         self.world.load(self._standing)
         disturbances = self.settings.disturbances
-        self._disturbance = draw_disturbance(
-            disturbances, self.world.n_links, self._rng
-        )
+        if disturbances.random:
+            self._disturbance = draw_disturbance(
+                disturbances, self.world.n_links, self._rng
+            )
         if disturbances.mass_error > 0.0:
             self.world.set_mass_factors(self._disturbance.mass_factors)
         contact = floor_contact(self.world.contacts(), self.world.left_sole, (0.0, 0.0))
@@ -251,8 +253,10 @@ class SimulatedBiped:
         foot = segment.right_foot if planned[0] else segment.left_foot
         # Over the time since the last observation; the walk's last one is shorter.
         period_s = seconds(max(1, len(self._ticks)))
-        # Drawn also where its size is zero, so that a size changes no other draw.
-        noise = (self._noise_sizes * self._rng.standard_normal((3, 2))).tolist()
+        noise = _NO_NOISE
+        if self.settings.disturbances.random:
+            # Drawn also where its size is zero, so that a size changes no other draw.
+            noise = (self._noise_sizes * self._rng.standard_normal((3, 2))).tolist()
         waist_in_support_foot = _measured(waist, foot[row].tolist(), noise[0])
         zmp_error = _measured(watch.contact, references.zmp[row], noise[1])
         acceleration = _measured(velocity, watch.waist_velocity, noise[2], period_s)

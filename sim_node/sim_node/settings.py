@@ -69,6 +69,18 @@ class DisturbanceSettings:
         """Refuse values out of range."""
         check_ranges(self)
 
+    @property
+    def random(self) -> bool:
+        """Whether chance has a part in the walks, so that no two are the same."""
+        sizes = (
+            self.push_force_n,
+            self.mass_error,
+            self.position_noise_m,
+            self.zmp_noise_m,
+            self.acceleration_noise_m_s2,
+        )
+        return any(size > 0.0 for size in sizes)
+
 
 @dataclass(frozen=True)
 class SimSettings:
