@@ -19,6 +19,7 @@ from biped_bringup.node_parameters import LOOK_AHEAD_TICKS, node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.supervisor.supervisor import Supervisor
 from biped_bringup.training import TrainingRun
+from biped_description.robot import Robot
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.pilot import Pilot
@@ -95,7 +96,10 @@ class _DirectAnswer:
     def __init__(self, run: TrainingRun) -> None:
         settings = run.settings
         self.reference = WaistReference(
-            settings.gait, settings.correction, LOOK_AHEAD_TICKS
+            Robot(settings.robot),
+            settings.gait,
+            settings.correction,
+            LOOK_AHEAD_TICKS,
         )
         self.punctuality = Punctuality()
         self.pilot = Pilot(run.walker.biped)

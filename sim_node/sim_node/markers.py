@@ -13,7 +13,7 @@ import numpy as np
 import pybullet
 from visualization_msgs.msg import Marker
 
-from biped_description.dimensions import BIPED
+from biped_description.settings import RobotSettings
 from biped_ros.guarded import GuardedNode
 from biped_ros.markers import (
     CLEAR,
@@ -42,10 +42,11 @@ _PALE_BLUE, _ORANGE, _GREY = (
 )
 
 
-def support_polygon(feet: Sequence[Point]) -> list[Point]:
+def support_polygon(robot: RobotSettings, feet: Sequence[Point]) -> list[Point]:
     """Return the corners of the convex hull of soles, anticlockwise.
 
     Args:
+        robot: dimensions of its soles.
         feet: (x, y) of none, one or both feet, which point ahead, world frame [m].
 
     Returns:
@@ -53,11 +54,11 @@ def support_polygon(feet: Sequence[Point]) -> list[Point]:
     """
     if not feet:
         return []
-    half_x, half_y = BIPED.sole.length_x / 2, BIPED.sole.length_y / 2
+    half_x, half_y = robot.sole_length_m / 2, robot.sole_width_m / 2
     soles = [
         ((x - half_x, y - half_y), (x + half_x, y - half_y),
          (x + half_x, y + half_y), (x - half_x, y + half_y))
-        for x, y in sorted((x + BIPED.sole_ahead_of_ankle, y) for x, y in feet)
+        for x, y in sorted((x + robot.sole_ahead_of_ankle_m, y) for x, y in feet)
     ]  # fmt: skip
     if len(soles) == 1:
         return list(soles[0])
@@ -80,17 +81,24 @@ class MarkerPublisher:
     """Publishes markers and torso pose at every n-th control tick of a walk."""
 
     def __init__(
-        self, node: GuardedNode, zmp_limit_m: float, segment_rows: int, every_ticks: int
+        self,
+        node: GuardedNode,
+        robot: RobotSettings,
+        zmp_limit_m: float,
+        segment_rows: int,
+        every_ticks: int,
     ) -> None:
         """Make the publishers on a node.
 
         Args:
             node: that publishes.
+            robot: whose soles are drawn.
             zmp_limit_m: norm of the ZMP error that is a failure.
             segment_rows: rows of every waist segment.
             every_ticks: control ticks between two messages; 0: never.
         """
         self.every_ticks = every_ticks
+        self._robot = robot
         self._markers = node.publisher(topics.MARKERS)
         self._torso = node.publisher(topics.TORSO_POSE)
         self._planned_rows = np.r_[
@@ -136,7 +144,7 @@ class MarkerPublisher:
             )
             if load > 0.0
         ]
-        corners = support_polygon(loaded)
+        corners = support_polygon(self._robot, loaded)
         origin = (0.0, 0.0, 0.0)
         reference = (*tick.zmp_reference, 0.0)
         values = np.concatenate(

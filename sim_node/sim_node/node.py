@@ -12,7 +12,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from std_srvs.srv import SetBool, Trigger
 
 from biped_common.seeds import robot_stream
-from biped_description.urdf import urdf_path
+from biped_description.robot import Robot
 from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import segment_of, segment_template, segment_values
@@ -47,6 +47,7 @@ class SimNode(GuardedNode):
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(SimNodeSettings, self._on_settings)
         self._settings = settings
+        self._robot = Robot(settings.robot)
         self._rng = np.random.default_rng(robot_stream(settings.seed))
         self._stance: WaistSegment | None = None
         self._pilot: Pilot | None = None
@@ -59,13 +60,14 @@ class SimNode(GuardedNode):
         self._ticks = TickPublisher(self, settings.publish_every_ticks)
         self._markers = MarkerPublisher(
             self,
+            settings.robot,
             settings.sim.limits.zmp_error_m,
             settings.segment_rows,
             settings.markers_every_ticks,
         )
         self._observations = self.publisher(topics.OBSERVATION)
         description = self.publisher(topics.ROBOT_DESCRIPTION)
-        description.publish(string_message(urdf_path().read_text()))
+        description.publish(string_message(self._robot.urdf))
         self._stance_template = segment_template(rows=1)
         self._template = segment_template(settings.segment_rows)
         self.listen(topics.STANCE, self._on_stance)
@@ -101,7 +103,7 @@ class SimNode(GuardedNode):
         if read is None:
             raise MalformedMessageError("stance: not a waist reference of one row")
         stance = segment_of(read[0])
-        check_stance(stance)
+        check_stance(self._robot, stance)
         if self._stance is None:
             self._stance = stance
             self._stand(stance)
@@ -113,6 +115,7 @@ class SimNode(GuardedNode):
     def _stand(self, stance: WaistSegment) -> None:
         """Build the world around the robot in its stance."""
         biped = SimulatedBiped(
+            self._robot,
             self._settings.sim,
             stance,
             self._rng,

@@ -23,7 +23,13 @@ def drawn(tmp_path: Path):
         if responder is not None:
             walker.walk(responder)
         picture = tmp_path / name
-        draw_zmp(trace, walker.reference.plan, SETTINGS.sim.limits, picture)
+        draw_zmp(
+            trace,
+            walker.reference.plan,
+            SETTINGS.robot,
+            SETTINGS.sim.limits,
+            picture,
+        )
         return picture
 
     draw.trace, draw.walk_ticks = trace, walker.walk_ticks

@@ -6,6 +6,7 @@ import math
 import pytest
 
 from biped_common.settings import SettingsError, from_mapping, to_mapping
+from biped_description.settings import RobotSettings
 from sim_node.settings import (
     DisturbanceSettings,
     LimitSettings,
@@ -24,8 +25,7 @@ EVERY_FIELD = pytest.mark.parametrize(
 
 
 def test_the_limits_of_the_paper_are_the_defaults():
-    limits = LimitSettings()
-    found = limits.zmp_error_m, limits.joint_velocity_rad_s
+    found = LimitSettings().zmp_error_m, RobotSettings().velocity_limit_rad_s
     assert found == (0.065, pytest.approx(20 * math.pi))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
+from biped_description.robot import Robot
 from biped_ros.cdr import string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import (
@@ -41,7 +42,10 @@ class TrajectoryNode(GuardedNode):
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(TrajectorySettings)
         reference = WaistReference(
-            settings.gait, settings.correction, settings.look_ahead_ticks
+            Robot(settings.robot),
+            settings.gait,
+            settings.correction,
+            settings.look_ahead_ticks,
         )
         self._maker = SegmentMaker(reference, settings.correction_limit_m)
         self._gaps = ObservationGaps()

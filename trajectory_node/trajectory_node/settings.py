@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_description.settings import RobotSettings
 
 # A foot or the ZMP cannot be moved in less time than this.
 _SHORTEST_PHASE_S = 0.1
@@ -29,7 +30,7 @@ class GaitSettings:
     steps: int = setting(5, "steps", "single supports; the last of several closes the feet", lower=1, upper=50)  # fmt: skip  # noqa: E501
     step_length_m: float = setting(0.10, "m", "advance of each foothold over the other foot's", lower=-0.5, upper=0.5)  # fmt: skip  # noqa: E501
     swing_height_m: float = setting(0.03, "m", "clearance of the swing foot at mid-swing", lower=0.0, upper=0.2)  # fmt: skip  # noqa: E501
-    waist_height_m: float = setting(0.475, "m", "constant height of the hip line", lower=0.2, upper=0.6)  # fmt: skip  # noqa: E501
+    waist_height_m: float = setting(0.475, "m", "constant height of the hip line", above=0.0, upper=2.0)  # fmt: skip  # noqa: E501
 
     @property
     def single_support_s(self) -> float:
@@ -84,6 +85,7 @@ class CorrectionSettings:
 class TrajectorySettings:
     """All of the trajectory node."""
 
+    robot: RobotSettings = section(RobotSettings)
     gait: GaitSettings = section(GaitSettings)
     correction: CorrectionSettings = section(CorrectionSettings)
     correction_limit_m: float = setting(

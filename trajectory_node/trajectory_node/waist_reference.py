@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import TICKS_PER_LEARNING_TICK
+from biped_description.robot import Robot
 from msgs_json.segment import WaistSegment
 from trajectory_node.bspline import CorrectionSpline
 from trajectory_node.errors import TrajectoryError
@@ -22,6 +23,7 @@ class WaistReference:
 
     def __init__(
         self,
+        robot: Robot,
         gait: GaitSettings,
         correction: CorrectionSettings,
         look_ahead_ticks: int = 1,
@@ -29,6 +31,7 @@ class WaistReference:
         """Plan the walk.
 
         Args:
+            robot: that walks.
             gait: the walk.
             correction: the spline.
             look_ahead_ticks: rows handed out beyond the learning tick. One is needed
@@ -42,8 +45,8 @@ class WaistReference:
                 f"look_ahead_ticks = {look_ahead_ticks}: "
                 f"must be between 1 and {LOOK_AHEAD_TICKS}"
             )
-        self.plan = plan_gait(gait)
-        self.static_waist = static_waist(self.plan, gait.waist_height_m)
+        self.plan = plan_gait(gait, robot.settings)
+        self.static_waist = static_waist(robot, self.plan, gait.waist_height_m)
         self.rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
         """Rows of every segment."""
         self._spline = CorrectionSpline(correction, self.rows)

@@ -64,6 +64,7 @@ def node_parameters(
     """
     return NodeParameters(
         sim=SimNodeSettings(
+            robot=settings.robot,
             sim=settings.sim,
             seed=seed,
             segment_rows=TICKS_PER_LEARNING_TICK + LOOK_AHEAD_TICKS,
@@ -73,6 +74,7 @@ def node_parameters(
             recorders=recorders,
         ),
         trajectory=TrajectorySettings(
+            robot=settings.robot,
             gait=settings.gait,
             correction=settings.correction,
             correction_limit_m=settings.learner.action.limit_m,

@@ -17,6 +17,7 @@ from biped_common.settings import (
     section,
     to_mapping,
 )
+from biped_description.settings import RobotSettings
 from learner_node.walking.settings import LearnerSettings
 from sim_node.settings import SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
@@ -27,8 +28,9 @@ DEFAULT_PRESET = "paper"
 
 @dataclass(frozen=True)
 class RunSettings:
-    """Gait, correction, robot and learner."""
+    """Robot, gait, correction, simulation and learner."""
 
+    robot: RobotSettings = section(RobotSettings)
     gait: GaitSettings = section(GaitSettings)
     correction: CorrectionSettings = section(CorrectionSettings)
     sim: SimSettings = section(SimSettings)

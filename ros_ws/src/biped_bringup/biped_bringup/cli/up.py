@@ -44,6 +44,7 @@ from biped_common.command_line import (
 )
 from biped_common.settings import to_mapping
 from biped_common.signals import stop_requests
+from biped_description.robot import Robot
 from biped_ros.environment import (
     DISCOVERY_RANGES,
     node_environment,
@@ -144,7 +145,8 @@ def run(options: argparse.Namespace) -> int:
     folder = writable_folder(options.out).resolve()
     memory_file = folder / MEMORY_FILE
     settings, seed = _settings_and_seed(options, memory_file)
-    WaistReference(settings.gait, settings.correction)  # refuses infeasible gaits here
+    # Refuses here a gait that the robot cannot walk.
+    WaistReference(Robot(settings.robot), settings.gait, settings.correction)
     bag = bag_folder(options, names)
     max_episodes = 1 if options.greedy else options.episodes or 0
     parameters = node_parameters(

@@ -104,8 +104,8 @@ def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
         settings = changed_settings(learned.settings, options.config, options.changes)
         if settings.learner != learned.settings.learner:
             raise CommandError(
-                "--set, --config: with --memory, only gait, correction and sim can be "
-                "changed; the learner's settings belong to the memory"
+                "--set, --config: with --memory, only robot, gait, correction and sim "
+                "can be changed; the learner's settings belong to the memory"
             )
     else:
         settings = settings_of(options)
@@ -121,7 +121,13 @@ def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
             responder = static_walk(settings.learner, walker.walk_ticks)
         result = walker.walk(responder)
         if options.figure is not None:
-            draw_zmp(trace, walker.reference.plan, settings.sim.limits, options.figure)
+            draw_zmp(
+                trace,
+                walker.reference.plan,
+                settings.robot,
+                settings.sim.limits,
+                options.figure,
+            )
         return result, walker.biped.trajectory_sha256
     finally:
         walker.close()
