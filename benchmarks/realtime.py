@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from benchmarks.graph_run import Listener, run_graph
 from benchmarks.report import Figure
-from biped_bringup.node_parameters import LOOK_AHEAD_TICKS, node_parameters
+from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.supervisor.supervisor import Supervisor
 from biped_bringup.training import TrainingRun
@@ -24,6 +24,7 @@ from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.pilot import Pilot
 from sim_node.realtime import Punctuality, RealtimeLoop
+from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
 
 _RATE_HZ = 500.0
@@ -99,7 +100,7 @@ class _DirectAnswer:
             Robot(settings.robot),
             settings.gait,
             settings.correction,
-            LOOK_AHEAD_TICKS,
+            TrajectorySettings.look_ahead_ticks,
         )
         self.punctuality = Punctuality()
         self.pilot = Pilot(run.walker.biped)

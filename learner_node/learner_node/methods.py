@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from biped_common.settings import section, setting
+from biped_common.settings import Settings, section, setting
 from learner_node.learner import Learner
 from learner_node.problem import Problem
 from learner_node.q_lambda import QLambda, QLambdaSettings
@@ -18,7 +18,7 @@ METHODS = ("xol", "q_lambda")
 
 
 @dataclass(frozen=True)
-class MethodSettings:
+class MethodSettings(Settings):
     """Which learner, how inputs become its states, and each learner's constants."""
 
     method: str = setting(

@@ -17,14 +17,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from biped_common.settings import check_ranges, setting
+from biped_common.settings import Settings, setting
 from learner_node.memory import Arrays, check_memory, count_of_states
 from learner_node.problem import Problem
 from learner_node.states import NO_STATE, BasisStates, StateSettings, doubled
 
 
 @dataclass(frozen=True)
-class QLambdaSettings:
+class QLambdaSettings(Settings):
     """Constants of Q(lambda)."""
 
     learning_rate: float = setting(0.1, "", "alpha", above=0.0, upper=1.0)
@@ -39,10 +39,6 @@ class QLambdaSettings:
         lower=0.0,
         upper=1.0,
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
 
 
 class QLambda:

@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from biped_common.settings import check_ranges, setting
+from biped_common.settings import Settings, setting
 from learner_node.memory import Arrays
 from learner_node.problem import Problem
 
@@ -28,7 +28,7 @@ _SAME_CELL_SQUARED_DISTANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class StateSettings:
+class StateSettings(Settings):
     """How continuous inputs become discrete states (Section 2, [12, 18])."""
 
     basis: str = setting(
@@ -47,10 +47,6 @@ class StateSettings:
     life_episodes: int = setting(
         100, "episodes", "an unrewarded state unvisited this long is forgotten", lower=1
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
 
 
 @njit(

@@ -15,14 +15,14 @@ from biped_common.seeds import robot_stream
 from biped_description.robot import Robot
 from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
-from biped_ros.messages import segment_of, segment_template, segment_values
+from biped_ros.messages import SegmentReader, segment_of, segment_values
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
-from msgs_json.wire import MalformedMessageError, RefusedMessageError, decode, encode
+from msgs_json.wire import RefusedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
 from sim_node.markers import MarkerPublisher
@@ -62,14 +62,12 @@ class SimNode(GuardedNode):
             self,
             settings.robot,
             settings.sim.limits.zmp_error_m,
-            settings.segment_rows,
             settings.markers_every_ticks,
         )
         self._observations = self.publisher(topics.OBSERVATION)
         description = self.publisher(topics.ROBOT_DESCRIPTION)
         description.publish(string_message(self._robot.urdf))
-        self._stance_template = segment_template(rows=1)
-        self._template = segment_template(settings.segment_rows)
+        self._stances, self._segments = SegmentReader(), SegmentReader()
         self.listen(topics.STANCE, self._on_stance)
         self.listen(topics.WAIST_REFERENCE, self._on_segment)
         self.listen(topics.EPISODE, self._on_episode)
@@ -99,10 +97,7 @@ class SimNode(GuardedNode):
     # -- messages ------------------------------------------------------------------
 
     def _on_stance(self, message: bytes) -> None:
-        read = self._stance_template.read(message)
-        if read is None:
-            raise MalformedMessageError("stance: not a waist reference of one row")
-        stance = segment_of(read[0])
+        stance = segment_of(self._stances.read(message)[0])
         check_stance(self._robot, stance)
         if self._stance is None:
             self._stance = stance
@@ -143,14 +138,9 @@ class SimNode(GuardedNode):
         if self._paused and self._loop is None:
             self._held = message
             return
-        read = self._template.read(message)
-        if read is None:
-            raise MalformedMessageError(
-                f"waist reference: not {self._settings.segment_rows} rows of this form"
-            )
+        values, clock_ticks = self._segments.read(message)
         if self._pilot is None:
             raise RefusedMessageError("no stance is known yet")
-        values, clock_ticks = read
         segment = segment_of(values)
         if self._loop is None:
             latency_ns = time.monotonic_ns() - self._observed_ns

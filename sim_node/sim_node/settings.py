@@ -111,9 +111,6 @@ class SimNodeSettings:
         upper=20.0,
         live=True,
     )
-    segment_rows: int = setting(
-        60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
-    )
     publish_every_ticks: int = setting(
         1,
         "control ticks",

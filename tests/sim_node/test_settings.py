@@ -76,9 +76,8 @@ def test_settings_of_the_node_come_back_from_their_mapping():
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("segment_rows", 10),
-        ("segment_rows", 60.0),
         ("publish_every_ticks", 0),
+        ("publish_every_ticks", 10.0),
         ("publish_every_ticks", 1001),
         ("timeout_s", 0.0),
         ("timeout_s", math.inf),

@@ -15,10 +15,7 @@ from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from biped_description.settings import RobotSettings
-from trajectory_node.settings import GaitSettings
-
-# The plan runs on beyond the walk's end, standing, for look-ahead.
-LOOK_AHEAD_TICKS = 600
+from trajectory_node.settings import LONGEST_LOOK_AHEAD_TICKS, GaitSettings
 
 
 @dataclass(frozen=True)
@@ -62,11 +59,9 @@ def plan_gait(settings: GaitSettings, robot: RobotSettings) -> GaitPlan:
     Events are compared in whole microseconds, since T_step = 1.875 s is not a whole
     number of control ticks.
     """
-    ticks = microseconds(settings.duration_s) // CONTROL_PERIOD_US
-    time_us = (
-        np.arange(ticks + TICKS_PER_LEARNING_TICK + LOOK_AHEAD_TICKS)
-        * CONTROL_PERIOD_US
-    )
+    ticks = settings.walk_ticks
+    rows = ticks + TICKS_PER_LEARNING_TICK + LONGEST_LOOK_AHEAD_TICKS
+    time_us = np.arange(rows) * CONTROL_PERIOD_US
     single_us = microseconds(settings.single_support_s)
     double_us = microseconds(settings.double_support_s)
     length = settings.step_length_m

@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.timing import control_ticks
 from biped_description.settings import RobotSettings
 
 # A foot or the ZMP cannot be moved in less time than this.
 _SHORTEST_PHASE_S = 0.1
 _ROUNDING_S = 1e-9
+LONGEST_LOOK_AHEAD_TICKS = 600
+"""The plan runs on beyond the walk's end, standing, for look-ahead."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,11 @@ class GaitSettings:
     def duration_s(self) -> float:
         """t_w: the whole walk, (steps + 1) T_step [s]."""
         return (self.steps + 1) * self.step_period_s
+
+    @property
+    def walk_ticks(self) -> int:
+        """Control ticks of the whole walk."""
+        return control_ticks(self.duration_s)
 
     def __post_init__(self) -> None:
         """Refuse values out of range or at odds with one another."""
@@ -92,7 +100,11 @@ class TrajectorySettings:
         0.024, "m", "corrections beyond this are refused", above=0.0, upper=0.2
     )
     look_ahead_ticks: int = setting(
-        50, "control ticks", "reference handed out beyond a segment", lower=1, upper=600
+        50,
+        "control ticks",
+        "reference handed out beyond a segment, for late peers in real time",
+        lower=1,
+        upper=LONGEST_LOOK_AHEAD_TICKS,
     )
 
     def __post_init__(self) -> None:

@@ -13,8 +13,12 @@ from biped_description.robot import Robot
 from msgs_json.segment import WaistSegment
 from trajectory_node.bspline import CorrectionSpline
 from trajectory_node.errors import TrajectoryError
-from trajectory_node.gait import LOOK_AHEAD_TICKS, plan_gait
-from trajectory_node.settings import CorrectionSettings, GaitSettings
+from trajectory_node.gait import plan_gait
+from trajectory_node.settings import (
+    LONGEST_LOOK_AHEAD_TICKS,
+    CorrectionSettings,
+    GaitSettings,
+)
 from trajectory_node.static_waist import static_waist
 
 
@@ -40,10 +44,10 @@ class WaistReference:
         Raises:
             InfeasibleGaitError: the robot cannot reach what the gait asks for.
         """
-        if not 1 <= look_ahead_ticks <= LOOK_AHEAD_TICKS:
+        if not 1 <= look_ahead_ticks <= LONGEST_LOOK_AHEAD_TICKS:
             raise TrajectoryError(
                 f"look_ahead_ticks = {look_ahead_ticks}: "
-                f"must be between 1 and {LOOK_AHEAD_TICKS}"
+                f"must be between 1 and {LONGEST_LOOK_AHEAD_TICKS}"
             )
         self.plan = plan_gait(gait, robot.settings)
         self.static_waist = static_waist(robot, self.plan, gait.waist_height_m)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
 
 
 @dataclass(frozen=True)
-class FixedModeSettings:
+class FixedModeSettings(Settings):
     """When a state becomes fixed, and when it is released (Section 3.3)."""
 
     strategy: str = setting(
@@ -45,13 +45,9 @@ class FixedModeSettings:
         choices=("last_decisions", "nearest"),
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class XolSettings:
+class XolSettings(Settings):
     """Constants of online profit sharing with penalty avoidance (Section 3)."""
 
     discount: float = setting(
@@ -97,9 +93,8 @@ class XolSettings:
     )
     fixed_mode: FixedModeSettings = section(FixedModeSettings)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
+    def check_together(self) -> None:
+        """Refuse reaches beyond the queue, and memories too short to judge by."""
         if self.failure_reach > self.queue_length:
             raise SettingsError(
                 "failure_reach",

@@ -11,8 +11,10 @@ from typing import Any
 import yaml
 
 from biped_common.settings import (
+    Settings,
     SettingsError,
     from_mapping,
+    nested,
     overlay,
     section,
     to_mapping,
@@ -27,7 +29,7 @@ DEFAULT_PRESET = "paper"
 
 
 @dataclass(frozen=True)
-class RunSettings:
+class RunSettings(Settings):
     """Robot, gait, correction, simulation and learner."""
 
     robot: RobotSettings = section(RobotSettings)
@@ -36,7 +38,7 @@ class RunSettings:
     sim: SimSettings = section(SimSettings)
     learner: LearnerSettings = section(LearnerSettings)
 
-    def __post_init__(self) -> None:
+    def check_together(self) -> None:
         """Refuse combinations that no part can see alone."""
         first = self.learner.schedule.first_target_s
         if first > self.gait.duration_s:
@@ -116,10 +118,7 @@ def _change(text: str) -> dict[str, Any]:
     if not separator or not key:
         raise SettingsError("--set", text, "must have the form section.key=value")
     try:
-        nested: Any = yaml.safe_load(value)
+        return nested(key, yaml.safe_load(value))
     except (yaml.YAMLError, ValueError):
         # Dates that do not exist and endless numbers are ValueErrors.
         raise SettingsError("--set", text, "the value is not YAML") from None
-    for part in reversed(key.split(".")):
-        nested = {part: nested}
-    return dict(nested)

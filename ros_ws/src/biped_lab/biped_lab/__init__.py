@@ -6,6 +6,4 @@ import registers ours, and `gymnasium.make("biped_lab:BipedWaist-v0")` does both
 
 import gymnasium
 
-gymnasium.register(
-    id="BipedWaist-v0", entry_point="biped_lab.waist_env:BipedWaistEnv"
-)
+gymnasium.register(id="BipedWaist-v0", entry_point="biped_lab.waist_env:BipedWaistEnv")

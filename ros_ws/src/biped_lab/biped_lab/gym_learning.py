@@ -182,7 +182,7 @@ def survival(every: int) -> Judge:
 
 
 def arrival(step: Step) -> Outcome:
-    """Judge tasks of arriving: a terminated episode has arrived, a truncated has not."""
+    """Judge tasks of arriving: terminated is there, truncated is too late."""
     if step.terminated:
         return Outcome(reward=1.0, counts=True, ended=True)
     return Outcome(ended=True) if step.truncated else GOING_ON

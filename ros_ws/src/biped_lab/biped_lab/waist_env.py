@@ -11,8 +11,8 @@ Observations are the eight inputs of Section 4.1, in SI units:
     6  waist_acceleration_x   [m/s^2] -1000 to 1000
     7  waist_acceleration_y
 
-An action is MultiDiscrete([15, 15]): corrections dx, dy of the waist, from -24 to 24 mm.
-A step is a decision: 20 ms in the paper, `learner.action.hold_ticks` times that.
+An action is MultiDiscrete([15, 15]): corrections dx, dy of the waist, from -24 to
+24 mm. A step is a decision: 20 ms, or `learner.action.hold_ticks` times that.
 
 The reward is that of Table 2 when the target time is reached (10,000 if the cost beats
 its estimate, else 10), and 0 until then. A failure ends the episode without reward; it
@@ -40,9 +40,11 @@ from biped_bringup.run_settings import load_settings
 from biped_bringup.walker import Walker
 from biped_common.settings import from_mapping, overlay, to_mapping
 from biped_common.timing import LEARNING_PERIOD_S, seconds
-from biped_lab.drawing import drawn_robot
+from biped_description.robot import Robot
+from biped_lab.drawing import Scene, picture
 from learner_node.walking.task import End, WalkTask, sensory_input
 from msgs_json.observation import Observation
+from sim_node.control_tick import ControlTick
 
 _FLAG, _LENGTH_M, _ACCELERATION_M_S2 = 10.0, 2.0, 1000.0
 _HIGH = np.array([_FLAG] * 2 + [_LENGTH_M] * 4 + [_ACCELERATION_M_S2] * 2)
@@ -84,7 +86,10 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
         self.settings = run
         self.render_mode = render_mode
         self._rng = np.random.default_rng(0)
-        self._walker = Walker(run, self._rng)
+        self._robot = Robot(run.robot)
+        self._tick: ControlTick | None = None
+        drawn = None if render_mode is None else self._take_note
+        self._walker = Walker(run, self._rng, drawn)
         self.task = WalkTask(learner, self._walker.walk_ticks)
         self._walks = 0
         self._over = True
@@ -99,6 +104,7 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
         if seed is not None:
             self._rng.bit_generator.state = self.np_random.bit_generator.state
         self._walks += 1
+        self._tick = None
         self._walker.reference.reset()
         observation = self._walker.biped.begin_walk(self._walks)
         self.task.begin()
@@ -131,7 +137,21 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
         """Return (height, width, 3) pixels: the robot from its right and from above."""
         if self.render_mode is None:
             return None
-        return drawn_robot(self._walker)
+        tick, limits = self._tick, self.settings.sim.limits
+        if tick is None:
+            stance = self._walker.reference.stance()
+            pose = (stance.waist, stance.left_foot, stance.right_foot)
+            zmp_reference = stance.zmp_reference[0]
+            q = self._robot.leg_joint_positions(*pose)[0]
+            scene = Scene(stance.waist[0], q, zmp_reference, zmp_reference)
+        else:
+            waist, _ = self._walker.biped.world.waist()
+            zmp = tick.contact[:2]
+            scene = Scene(waist, tick.joint_position, zmp, tick.zmp_reference)
+        return picture(self._robot, scene, limits.zmp_error_m)
+
+    def _take_note(self, tick: ControlTick) -> None:
+        self._tick = tick
 
     def close(self) -> None:
         """End the world."""

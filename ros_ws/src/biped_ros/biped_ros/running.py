@@ -12,10 +12,10 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
 
+from biped_common.command_line import WRONG_INPUT
 from biped_common.settings import SettingsError
 from biped_ros.guarded import GuardedNode
 
-WRONG_INPUT = 2
 REFUSED = 4
 # The events executor cannot be interrupted in an endless spin, so it spins in turns.
 _TURN_S = 0.2

@@ -46,7 +46,7 @@ from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.topics import Topic
 
-NAME = "recorder_node"
+NAME = topics.RECORDER_NODE
 _TURN_S = 0.02
 _LOOK_PERIOD_S = 0.1
 # Long enough for the reason to get around before the node ends.

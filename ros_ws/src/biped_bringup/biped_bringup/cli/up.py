@@ -28,7 +28,7 @@ from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.cli.up_report import report
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import RunSettings
-from biped_bringup.supervisor.graph_watch import GraphWatch
+from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
 from biped_bringup.supervisor.supervisor import (
     RECORDER,
     START_ORDER,
@@ -183,7 +183,7 @@ def run(options: argparse.Namespace) -> int:
     os.environ.update(environment)  # the supervisor's own node, too
     screen = StatusScreen(Console(stderr=True), live=not options.no_view)
     with stop_requests() as stops, screen:
-        screen.line("supervisor", f"ROS_DOMAIN_ID={domain}, {options.discovery}")
+        screen.line(NAME, f"ROS_DOMAIN_ID={domain}, {options.discovery}")
         supervisor = Supervisor(
             {name: parameters[name] for name in names},
             environment,
