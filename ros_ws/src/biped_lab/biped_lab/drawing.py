@@ -48,8 +48,9 @@ def picture(robot: Robot, scene: Scene, zmp_limit_m: float) -> NDArray[np.uint8]
         axes.set_ylabel(label)
         axes.set_aspect("equal")
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+    canvas.draw()  # type: ignore[no-untyped-call]
+    rgba = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
+    return rgba[:, :, :3].copy()
 
 
 def _legs(
@@ -71,9 +72,9 @@ def _legs(
         up_the_thigh = np.array(
             (np.sin(pitch), -np.sin(roll) * np.cos(pitch), np.cos(roll) * np.cos(pitch))
         )
-        hip = waist + (0.0, sign * settings.half_hip_spacing_m, 0.0)
+        hip = waist + np.array((0.0, sign * settings.half_hip_spacing_m, 0.0))
         knee = hip - settings.thigh_length_m * up_the_thigh
-        ankle = waist + foot[0] + (0.0, 0.0, settings.ankle_height_m)
+        ankle = waist + foot[0] + np.array((0.0, 0.0, settings.ankle_height_m))
         legs[colour] = np.array([hip, knee, ankle, waist + foot[0]])
     return legs
 
@@ -85,7 +86,7 @@ def _draw_side(
     legs: dict[str, NDArray[np.float64]],
 ) -> None:
     axes.axhline(0.0, color="0.6", linewidth=1.0)
-    shoulders = waist + (0.0, 0.0, _torso_height_m(robot))
+    shoulders = waist + np.array((0.0, 0.0, _torso_height_m(robot)))
     axes.plot(*np.array([waist, shoulders])[:, [0, 2]].T, color=_BODY, linewidth=8.0)
     for colour, leg in legs.items():
         axes.plot(*leg[:3, [0, 2]].T, "o-", color=colour, linewidth=5.0)
@@ -133,5 +134,5 @@ def _sole(robot: Robot, foot: NDArray[np.float64]) -> NDArray[np.float64]:
     settings = robot.settings
     x, y = 0.5 * settings.sole_length_m, 0.5 * settings.sole_width_m
     corners = [(-x, -y, 0.0), (x, -y, 0.0), (x, y, 0.0), (-x, y, 0.0)]
-    ahead = (settings.sole_ahead_of_ankle_m, 0.0, 0.0)
-    return foot + np.array(corners) + ahead
+    ahead = np.array((settings.sole_ahead_of_ankle_m, 0.0, 0.0))
+    return np.asarray(foot + np.array(corners) + ahead)

@@ -153,7 +153,7 @@ def perform(task: GymTask, learner: Learner, seed: int | None = None) -> Practic
     return Practice(steps, total)
 
 
-# -- judges -----------------------------------------------------------------------------
+# -- judges ---------------------------------------------------------------------------
 
 
 def told_by_info(step: Step) -> Outcome:

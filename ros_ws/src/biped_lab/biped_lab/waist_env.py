@@ -133,7 +133,7 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
         blameless = outcome.penalty is None and outcome.reward is None
         return inputs, outcome.reward or 0.0, not blameless, blameless, _info(end)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Return (height, width, 3) pixels: the robot from its right and from above."""
         if self.render_mode is None:
             return None
