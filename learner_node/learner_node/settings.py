@@ -28,7 +28,9 @@ class LearnerNodeSettings:
     checkpoint_every_episodes: int = setting(
         10, "episodes", "learning episodes between saves", lower=1, live=True
     )
-    run_settings: str = setting("{}", "", "settings of the whole run, kept with it")
+    run_settings: str = setting(
+        "{}", "", "JSON, sections of the run's settings beside learner, kept with it"
+    )
 
     def __post_init__(self) -> None:
         """Refuse values out of range."""
