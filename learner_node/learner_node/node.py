@@ -237,7 +237,7 @@ class LearnerNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(LearnerNode, wrong_input=(CheckpointError,))
+    return run_node(LearnerNode)
 
 
 if __name__ == "__main__":

@@ -229,7 +229,7 @@ def test_settings_of_the_run_that_are_no_json_object_are_refused(standing, text)
     [
         (
             "sim_node: {ros__parameters: {nonsense: 1}}",
-            "wrong parameter: nonsense = 1: unknown key",
+            "cannot start: nonsense = 1: unknown key",
         ),
         ("sim_node: {ros__parameters: {seed: 1", "wrong arguments: "),
     ],

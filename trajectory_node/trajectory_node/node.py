@@ -18,7 +18,6 @@ from msgs_json import topics
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import decode
-from trajectory_node.errors import InfeasibleGaitError
 from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
@@ -74,7 +73,7 @@ class TrajectoryNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(TrajectoryNode, wrong_input=(InfeasibleGaitError,))
+    return run_node(TrajectoryNode)
 
 
 if __name__ == "__main__":
