@@ -28,4 +28,6 @@ class LearnerNodeSettings(Settings):
     checkpoint_every_episodes: int = setting(
         10, "episodes", "learning episodes between saves", lower=1, live=True
     )
-    run_settings: str = setting("{}", "", "settings of the whole run, kept with it")
+    run_settings: str = setting(
+        "{}", "", "JSON, sections of the run's settings beside learner, kept with it"
+    )

@@ -19,7 +19,6 @@ from msgs_json import topics
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import decode
-from trajectory_node.errors import InfeasibleGaitError
 from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
@@ -78,7 +77,7 @@ class TrajectoryNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(TrajectoryNode, wrong_input=(InfeasibleGaitError,))
+    return run_node(TrajectoryNode)
 
 
 if __name__ == "__main__":

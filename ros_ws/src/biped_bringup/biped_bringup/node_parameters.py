@@ -59,6 +59,8 @@ def node_parameters(
         listen_s: how long the learner listens for another one first.
         recorders: for which the robot waits with its first walk.
     """
+    beside_learner = to_mapping(settings)
+    del beside_learner["learner"]
     return NodeParameters(
         sim=SimNodeSettings(
             robot=settings.robot,
@@ -83,6 +85,6 @@ def node_parameters(
             max_episodes=max_episodes,
             frozen=frozen,
             listen_s=listen_s,
-            run_settings=json.dumps(to_mapping(settings)),
+            run_settings=json.dumps(beside_learner),
         ),
     )

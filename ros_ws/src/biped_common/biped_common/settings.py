@@ -29,6 +29,7 @@ from msgspec import Meta
 from biped_common.errors import BipedError
 
 AnySettings = TypeVar("AnySettings")
+Content = TypeVar("Content")
 _SECTION = "must be a section of keys"
 _NOUNS = {int: "a whole number", bool: "true or false", str: "text"}
 _WITHOUT_DOT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
@@ -239,6 +240,23 @@ def from_mapping(
             except SettingsError as error:
                 raise error.under(key) from None
     return cls(**arguments)
+
+
+def from_json(key: str, text: str, kind: type[Content]) -> Content:
+    """Return what a setting that is JSON text holds: a tree that no one here declares.
+
+    Args:
+        key: of the setting.
+        text: its value.
+        kind: what it must hold, such as dict[str, str].
+
+    Raises:
+        SettingsError: it holds something else.
+    """
+    try:
+        return msgspec.json.decode(text, type=kind)
+    except msgspec.DecodeError as error:
+        raise SettingsError(key, text, f"is not the JSON it must be, {error}") from None
 
 
 def to_mapping(settings: Any) -> dict[str, Any]:

@@ -21,7 +21,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
 
@@ -40,7 +39,7 @@ from biped_bag.records import (
     STATE_KEY,
 )
 from biped_bag.writer import BagWriter, RecordedMessage, fresh_folder
-from biped_common.settings import SettingsError
+from biped_common.settings import SettingsError, from_json
 from biped_ros.guarded import GuardedNode
 from biped_ros.running import run_node
 from msgs_json import topics
@@ -136,7 +135,7 @@ class RecorderNode(GuardedNode):
         settings = self._settings
         asked_for = Path(settings.folder).absolute()
         folder = fresh_folder(asked_for) if settings.number_if_taken else asked_for
-        run = _texts("run", settings.run)
+        run = from_json("run", settings.run, dict[str, str])
         attachment = Path(settings.attachment) if settings.attachment else None
         if folder != asked_for:
             # Begun in the middle of a run: the memory there is not the one begun with.
@@ -222,20 +221,6 @@ class RecorderNode(GuardedNode):
             text = f"recording stopped: {self._error}"
             self.remark(DiagnosticStatus.ERROR, "recording", text)
         super()._publish_diagnostics()
-
-
-def _texts(key: str, text: str) -> dict[str, str]:
-    """Return a JSON object of texts.
-
-    Raises:
-        SettingsError: it is something else.
-    """
-    try:
-        return msgspec.json.decode(text, type=dict[str, str])
-    except msgspec.DecodeError as error:
-        raise SettingsError(
-            key, text, f"must be a JSON object of texts, {error}"
-        ) from None
 
 
 def main() -> int:
