@@ -22,9 +22,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 from tests.graph.domains import MODULE, own_domain
 
-from biped_bag.metadata import read_metadata
-from biped_bag.recorder.run_record import run_record
-from biped_bag.records import STATE_KEY
+from biped_bag.records import STATE_KEY, run_record
+from biped_bag.storage.metadata import read_metadata
 from biped_bringup.cli.recording import recorder_parameters
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
@@ -206,7 +205,7 @@ def test_mcap_ros2_decodes_every_message(run):
 def test_metadata_counts_every_topic(run):
     messages = recorded(run.bag)
     for topic in read_metadata(run.bag).topics:
-        assert topic.message_count == len(messages[topic.name]), topic.name
+        assert topic.count == len(messages[topic.name]), topic.name
 
 
 def test_nothing_was_lost(run):

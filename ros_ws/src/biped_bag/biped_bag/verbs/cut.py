@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from biped_bag.cut import cut, stretch_of_episodes, stretch_of_time
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
 from biped_common.command_line import CommandError, add_json_option, print_json
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from biped_bag.export import FORMATS, export
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
 from biped_common.command_line import add_json_option, print_json
 
 

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from biped_bag.playback import PlayRequest, play
-from biped_bag.playback_clock import FLAT_OUT
-from biped_bag.reader import BagReader
+from biped_bag.player.clock import FLAT_OUT
+from biped_bag.player.play import PlayRequest, play
+from biped_bag.storage.reader import BagReader
 from biped_common.command_line import DONE, INTERRUPTED, CommandError, natural
 from biped_common.signals import stop_requests
 from biped_ros.environment import (

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from biped_bag.recover import RecoveryFailedError, recover
+from biped_bag.recovery.recover import RecoveryFailedError, recover
 from biped_common.command_line import add_json_option, print_json
 
 FAILED = 1

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from biped_bag.errors import BagError
-from biped_bag.reader import BagReader
-from biped_bag.recorded_session import recorded_session
-from biped_bag.recorded_walks import WANTED
-from biped_bag.verify import verify
-from biped_bag.verify_report import Verdict, Verification, WalkCheck
+from biped_bag.storage.reader import BagReader
+from biped_bag.verification.learner import recorded_session
+from biped_bag.verification.report import Verdict, Verification, WalkCheck
+from biped_bag.verification.verify import verify
+from biped_bag.verification.walks import WANTED
 from biped_common.command_line import add_json_option, print_json
 from msgs_json.wire import MalformedMessageError
 
