@@ -1,8 +1,11 @@
 """Bags to read, cut, damage and mend."""
 
+import contextlib
 from pathlib import Path
 
-from mcap.records import Attachment
+from mcap.exceptions import EndOfFile
+from mcap.records import Attachment, Message
+from mcap.stream_reader import StreamReader
 
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.writer import BagWriter
@@ -93,3 +96,13 @@ def memory(content: bytes) -> Attachment:
     """The attachment of a learner's memory."""
     kind = "application/octet-stream"
     return Attachment(START_NS, START_NS, "memory.npz", kind, content)
+
+
+def messages_to_the_end(file: Path) -> list[Message]:
+    """Messages of a file that was not finished, up to its last complete chunk."""
+    messages = []
+    with file.open("rb") as content, contextlib.suppress(EndOfFile):
+        for record in StreamReader(content).records:
+            if isinstance(record, Message):
+                messages.append(record)
+    return messages

@@ -2,7 +2,7 @@
 
 import pytest
 import yaml
-from tests.biped_bag.bags import LATCHED, RELIABLE
+from tests.biped_bag.bags import RELIABLE
 
 from biped_bag.errors import BagError
 from biped_bag.storage.contents import BagTopic
@@ -21,7 +21,7 @@ def a_bag():
     return BagMetadata(
         topics=[
             BagTopic(
-                "/a", "std_msgs/msg/String", (RELIABLE, LATCHED), "RIHS01_1", count=3
+                "/a", "std_msgs/msg/String", (RELIABLE, RELIABLE), "RIHS01_1", count=3
             ),
             BagTopic("/b", "std_msgs/msg/String"),
         ],
@@ -43,12 +43,6 @@ def test_the_bag_lasts_from_its_first_message_to_its_last(tmp_path):
     assert content["starting_time"] == {"nanoseconds_since_epoch": 100}
     assert content["duration"] == {"nanoseconds": 300}
     assert content["message_count"] == 3
-
-
-def test_quality_of_service_is_written_in_words():
-    content = yaml.safe_load(metadata_text(a_bag(), with_root=False))
-    topic = content["topics_with_message_count"][0]["topic_metadata"]
-    assert topic["offered_qos_profiles"] == [RELIABLE, LATCHED]
 
 
 def test_equal_values_are_written_out_without_anchors():

@@ -1,22 +1,19 @@
 """Bags as others read them: rosbags, mcap-ros2-support, and after a bad end."""
 
-import contextlib
 import subprocess
 import sys
 
 import pytest
-from mcap.exceptions import EndOfFile
 from mcap.reader import make_reader
-from mcap.records import Message
-from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
-from tests.biped_bag.bags import LATCHED, memory
+from tests.biped_bag.bags import LATCHED, memory, messages_to_the_end
 
 from biped_bag.errors import BagError
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.layout import fresh_folder
 from biped_bag.storage.metadata import FILE_NAME, read_metadata
+from biped_bag.storage.reader import BagReader
 from biped_bag.storage.writer import BagWriter
 from biped_ros.cdr import string_message
 
@@ -40,16 +37,6 @@ def written(folder, count=300, **options):
     for number in range(2, count + 2):
         writer.write(message("/fast", number))
     return writer
-
-
-def stream(file):
-    """Return the messages of a file that ends without an index."""
-    messages = []
-    with file.open("rb") as content, contextlib.suppress(EndOfFile):
-        for record in StreamReader(content).records:
-            if isinstance(record, Message):
-                messages.append(record)
-    return messages
 
 
 def test_rosbags_reads_every_message_as_it_was_written(tmp_path):
@@ -130,10 +117,20 @@ def test_a_bag_that_was_begun_has_metadata(tmp_path):
     assert read_metadata(tmp_path / "bag").files[0].path == "bag_0.mcap"
 
 
+def test_a_next_file_that_cannot_be_made_leaves_the_one_before_it_whole(tmp_path):
+    writer = written(tmp_path / "bag")
+    (tmp_path / "bag/bag_1.mcap").touch()
+    with pytest.raises(BagError, match="File exists"):
+        writer.split(FAR_PAST_NS + 10**9)
+    writer.close()
+    assert BagReader(tmp_path / "bag/bag_0.mcap").message_count == 301
+    assert read_metadata(tmp_path / "bag").message_count == 301
+
+
 def test_what_was_flushed_is_there_without_an_end(tmp_path):
     writer = written(tmp_path / "bag")
     writer.flush()
-    assert len(stream(tmp_path / "bag/bag_0.mcap")) == 301
+    assert len(messages_to_the_end(tmp_path / "bag/bag_0.mcap")) == 301
 
 
 def test_a_bag_is_never_overwritten(tmp_path):
@@ -214,7 +211,9 @@ def test_a_full_disk_is_an_error_that_names_the_bag(full):
 
 def test_a_bag_on_a_full_disk_ends_with_the_last_flush(full):
     folder, _ = full
-    sequences = [message.sequence for message in stream(folder / "bag_0.mcap")]
+    sequences = [
+        message.sequence for message in messages_to_the_end(folder / "bag_0.mcap")
+    ]
     assert sequences == list(range(1, len(sequences) + 1))
     assert len(sequences) % 50 == 0
     assert sequences
@@ -222,6 +221,6 @@ def test_a_bag_on_a_full_disk_ends_with_the_last_flush(full):
 
 def test_metadata_of_a_bag_on_a_full_disk_counts_what_is_in_it(full):
     folder, _ = full
-    in_file = len(stream(folder / "bag_0.mcap"))
+    in_file = len(messages_to_the_end(folder / "bag_0.mcap"))
     assert read_metadata(folder).message_count == in_file
     assert read_metadata(folder).topics[0].count == in_file

@@ -25,12 +25,7 @@ class PlaybackClock:
             rate: recorded nanoseconds per nanosecond, above 0; FLAT_OUT for no waiting.
             now_ns: the present, of a clock that never goes back.
             paused: begin paused.
-
-        Raises:
-            ValueError: the rate is not above 0.
         """
-        if not rate > 0.0:
-            raise ValueError(f"rate {rate}: must be above 0")
         self._rate = rate
         self._log_ns = log_ns
         self._since_ns = now_ns

@@ -13,6 +13,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from rclpy.duration import Duration
@@ -64,25 +65,24 @@ class PlayerNode(Node):  # type: ignore[misc]
         """
         super().__init__(NAME, **options)
         self._outputs: dict[str, _Output] = {}
-        self._player: Player | None = None
         self._acknowledged_at = time.monotonic()
         for name, topic in topics.items():
             self._add(name, topic, remaps.get(name, name))
-        for verb, handle in (
-            ("pause", self._on_pause),
-            ("resume", self._on_resume),
-            ("step", self._on_step),
-        ):
-            self.create_service(Trigger, f"{NAME}/{verb}", handle)
 
     @property
     def topics(self) -> frozenset[str]:
         """Names in the bag of what is played."""
         return frozenset(self._outputs)
 
-    def control(self, player: Player) -> None:
-        """Have the services act on this player."""
-        self._player = player
+    def serve(self, player: Player) -> None:
+        """Offer services that pause the player, let it go on, and step."""
+        for verb, change, done, not_done in (
+            ("pause", player.pause, "paused", "not playing"),
+            ("resume", player.resume, "playing", "not paused"),
+            ("step", player.step, "one message more", "not paused"),
+        ):
+            answer = partial(_answer, change, done, not_done)
+            self.create_service(Trigger, f"{NAME}/{verb}", answer)
 
     def await_subscribers(self, stopped: Callable[[], bool]) -> None:
         """Wait until the subscribers that are on the graph are connected."""
@@ -156,26 +156,6 @@ class PlayerNode(Node):  # type: ignore[misc]
             < self.count_subscribers(output.publisher.topic_name)
         ]
 
-    # -- services ------------------------------------------------------------------
-
-    def _on_pause(
-        self, _: Trigger.Request, response: Trigger.Response
-    ) -> Trigger.Response:
-        done = self._player is not None and self._player.pause()
-        return _answer(response, done, "paused", "not playing")
-
-    def _on_resume(
-        self, _: Trigger.Request, response: Trigger.Response
-    ) -> Trigger.Response:
-        done = self._player is not None and self._player.resume()
-        return _answer(response, done, "playing", "not paused")
-
-    def _on_step(
-        self, _: Trigger.Request, response: Trigger.Response
-    ) -> Trigger.Response:
-        done = self._player is not None and self._player.step()
-        return _answer(response, done, "one message more", "not paused")
-
 
 def _window(profile: QoSProfile) -> int:
     """Return after how many messages acknowledgements are waited for.
@@ -187,8 +167,12 @@ def _window(profile: QoSProfile) -> int:
 
 
 def _answer(
-    response: Trigger.Response, done: bool, yes: str, no: str
+    change: Callable[[], bool],
+    done: str,
+    not_done: str,
+    _: Trigger.Request,
+    response: Trigger.Response,
 ) -> Trigger.Response:
-    response.success = done
-    response.message = yes if done else no
+    response.success = change()
+    response.message = done if response.success else not_done
     return response

@@ -105,7 +105,7 @@ def play(
             paused=request.paused,
             loop=request.loop,
         )
-        node.control(player)
+        node.serve(player)
         tell(
             f"playing {(end_ns - start_ns) / NS_PER_S:.2f} s of {bag.path}, "
             f"{len(node.topics)} topics, ROS_DOMAIN_ID={domain}"

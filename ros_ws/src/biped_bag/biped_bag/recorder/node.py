@@ -146,11 +146,12 @@ class RecorderNode(GuardedNode):
         asked_for = Path(settings.folder).absolute()
         folder = fresh_folder(asked_for) if settings.number_if_taken else asked_for
         run = _texts("run", settings.run)
-        attachment = Path(settings.attachment) if settings.attachment else None
+        attached = []
         if folder != asked_for:
             # Begun in the middle of a run: the memory there is not the one begun with.
-            run, attachment = {**run, "continues": asked_for.name}, None
-        content = None if attachment is None else attachment.read_bytes()
+            run["continues"] = asked_for.name
+        elif settings.attachment:
+            attached.append(_attachment(Path(settings.attachment)))
         writer = BagWriter(
             folder,
             max_file_bytes=(
@@ -158,9 +159,8 @@ class RecorderNode(GuardedNode):
             ),
             records={RUN_RECORD: run} if run else {},
         )
-        if attachment is not None and content is not None:
-            now_ns, kind = time.time_ns(), "application/octet-stream"
-            writer.attach(Attachment(now_ns, now_ns, attachment.name, kind, content))
+        for item in attached:
+            writer.attach(item)
         self.get_logger().info(f"recording to {folder}")
         return WriterThread(writer)
 
@@ -236,6 +236,16 @@ def _texts(key: str, text: str) -> dict[str, str]:
         raise SettingsError(
             key, text, f"must be a JSON object of texts, {error}"
         ) from None
+
+
+def _attachment(file: Path) -> Attachment:
+    """Return a file as it is kept in the bag.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    now_ns, kind = time.time_ns(), "application/octet-stream"
+    return Attachment(now_ns, now_ns, file.name, kind, file.read_bytes())
 
 
 def main() -> int:

@@ -20,7 +20,7 @@ from mcap.records import (
 from biped_bag.recovery.report import RecoveryReport
 from biped_bag.recovery.scan import Hole, WholeChunk, scan
 from biped_bag.recovery.tally import FileTally
-from biped_bag.storage.contents import BagMessage, BagTopic, topic_of
+from biped_bag.storage.contents import BagTopic, message_of, topic_of
 from biped_bag.storage.integrity import (
     DamagedFileError,
     FileEnd,
@@ -138,15 +138,7 @@ class FileRecovery:
             self._tally.channel(message.channel_id).add_hole(1, message.log_time)
             return
         self._tally.add(message)
-        self._whole.writer.write(
-            BagMessage(
-                topic,
-                message.data,
-                message.log_time,
-                message.publish_time,
-                message.sequence,
-            )
-        )
+        self._whole.writer.write(message_of(topic, message))
 
     def _add_hole(self, hole: Hole) -> None:
         self._holes += 1

@@ -19,8 +19,7 @@ The broken bag is never changed.
 How losses are counted, see `tally`; a finished `metadata.yaml` counts, too. Without an
 end, messages that the recorder had not yet handed to the system (at most 0.1 s) leave
 no trace: the report says that the end is missing.
-Exit status of `biped bag recover`: 0 nothing lost, 1 `RecoveryFailedError`, 2 another
-`BagError`, 3 something lost.
+The exit statuses that the command makes of this: `verbs/recover.py`.
 """
 
 from __future__ import annotations

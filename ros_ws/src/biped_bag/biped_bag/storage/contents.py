@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import yaml
-from mcap.records import Channel, Schema
+from mcap.records import Channel, Message, Schema
 from mcap.well_known import MessageEncoding
 
 _QOS_KEY = "offered_qos_profiles"
@@ -61,6 +61,17 @@ class BagTopic:
             profile.get("durability") in _TRANSIENT_LOCAL
             for profile in self.offered_qos
         )
+
+
+def message_of(topic: str, message: Message) -> BagMessage:
+    """Return a message of a topic as MCAP has it."""
+    return BagMessage(
+        topic,
+        message.data,
+        message.log_time,
+        message.publish_time,
+        message.sequence,
+    )
 
 
 def channel_metadata(topic: BagTopic) -> dict[str, str]:

@@ -4,29 +4,10 @@ from __future__ import annotations
 
 import itertools
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 from biped_bag.errors import BagError
 from biped_bag.storage.metadata import FILE_NAME, BagMetadata, read_metadata
-
-
-@dataclass(frozen=True)
-class BagFiles:
-    """Where a bag's data are."""
-
-    path: Path
-    """As the user named it."""
-    data: tuple[Path, ...]
-    """MCAP files, in the order of recording; at least one."""
-    metadata: BagMetadata | None
-    """None for a single MCAP file."""
-
-    @property
-    def size(self) -> int:
-        """Bytes of everything in the folder, as rosbag2 counts them, or of the file."""
-        files = self.path.iterdir() if self.path.is_dir() else self.data
-        return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def broken(bag: Path, why: str) -> BagError:
@@ -34,14 +15,16 @@ def broken(bag: Path, why: str) -> BagError:
     return BagError(f"{why}; `biped bag recover {bag} OUT` saves what is left")
 
 
-def find_files(path: Path) -> BagFiles:
-    """Return the files of a finished bag.
+def find_files(path: Path) -> tuple[tuple[Path, ...], BagMetadata | None]:
+    """Return a finished bag's MCAP files, in the order of recording, and its metadata.
+
+    A single MCAP file has no metadata.
 
     Raises:
         BagError: there is no such path, no bag, or metadata.yaml does not say which.
     """
     if path.is_file():
-        return BagFiles(path, (path,), None)
+        return (path,), None
     if not path.is_dir():
         raise BagError(f"{path}: no such file or folder")
     present = data_files(path)
@@ -54,7 +37,7 @@ def find_files(path: Path) -> BagFiles:
     data = tuple(path / file.path for file in metadata.files)
     if set(data) != set(present):
         raise broken(path, f"{path}: {FILE_NAME} does not list the files here")
-    return BagFiles(path, data, metadata)
+    return data, metadata
 
 
 def data_files(folder: Path) -> tuple[Path, ...]:

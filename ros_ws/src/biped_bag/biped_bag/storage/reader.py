@@ -19,7 +19,7 @@ from mcap.records import Attachment, Metadata
 from mcap.summary import Summary
 
 from biped_bag.errors import BagError
-from biped_bag.storage.contents import BagMessage, BagTopic, topic_of
+from biped_bag.storage.contents import BagMessage, BagTopic, message_of, topic_of
 from biped_bag.storage.integrity import DAMAGE, DamagedFileError, sound_summary
 from biped_bag.storage.layout import broken, find_files
 from biped_bag.storage.metadata import FILE_NAME
@@ -37,8 +37,8 @@ class BagReader:
         Raises:
             BagError: see the top of this module.
         """
-        self._files = find_files(path)
         self.path = path
+        self.files, self._told = find_files(path)
         self.topics: dict[str, BagTopic] = {}
         self.message_count = 0
         times: list[tuple[int, int]] = []
@@ -60,20 +60,15 @@ class BagReader:
         self._compare_with_metadata()
 
     @property
-    def files(self) -> tuple[Path, ...]:
-        """MCAP files, in the order of recording."""
-        return self._files.data
-
-    @property
     def size(self) -> int:
-        """Bytes of all files of the bag."""
-        return self._files.size
+        """Bytes of everything in the folder, as rosbag2 counts them, or of the file."""
+        files = self.path.iterdir() if self.path.is_dir() else self.files
+        return sum(file.stat().st_size for file in files if file.is_file())
 
     @property
     def ros_distro(self) -> str:
         """ROS distribution that recorded, as metadata.yaml says, or empty."""
-        metadata = self._files.metadata
-        return "" if metadata is None else metadata.ros_distro
+        return "" if self._told is None else self._told.ros_distro
 
     @property
     def duration_ns(self) -> int:
@@ -137,13 +132,7 @@ class BagReader:
             )
             try:
                 for _, channel, message in found:
-                    yield BagMessage(
-                        channel.topic,
-                        message.data,
-                        message.log_time,
-                        message.publish_time,
-                        message.sequence,
-                    )
+                    yield message_of(channel.topic, message)
             except DAMAGE as error:
                 raise broken(self.path, f"{file}: damaged ({error})") from None
 
@@ -166,9 +155,7 @@ class BagReader:
             self.topics[topic.name] = replace(before, count=before.count + topic.count)
 
     def _compare_with_metadata(self) -> None:
-        if self._files.metadata is None:
-            return
-        for told in self._files.metadata.topics:
+        for told in [] if self._told is None else self._told.topics:
             held = self.topics[told.name].count if told.name in self.topics else 0
             if told.count != held:
                 raise broken(

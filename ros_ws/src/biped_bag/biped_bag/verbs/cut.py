@@ -1,4 +1,12 @@
-"""`biped bag cut`: a stretch of a bag as a bag of its own."""
+"""Write a stretch of a bag, and maybe only some topics of it, as a bag of its own.
+
+Latched messages from before the stretch stand at its start.
+
+Exit status:
+    0  written, and it holds nothing but whole messages
+    2  no such bag or a broken one, no such topic or episode, nothing in the stretch;
+       OUT is there already or cannot be written: what was begun of it is removed
+"""
 
 from __future__ import annotations
 
@@ -19,8 +27,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "cut",
         help="cut a stretch of time, or some episodes, out of a bag",
-        description="Write a stretch of a bag as a bag of its own. Latched messages "
-        "from before the stretch stand at its start.",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("bag", type=Path, metavar="IN", help="folder or MCAP file")
     parser.add_argument(

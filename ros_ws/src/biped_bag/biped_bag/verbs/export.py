@@ -1,4 +1,13 @@
-"""`biped bag export`: the topics of a bag as tidy tables."""
+"""Write the topics of a bag as tables, one per topic, one row per message.
+
+Columns are log_time_ns, stamp_ns where there is a header, and one per number, named
+with its unit where the topic defines it.
+
+Exit status:
+    0  all tables are written
+    2  no such bag or a broken one, no such topic, a message that is not of its type;
+       a table is there already or cannot be written: those before it are written
+"""
 
 from __future__ import annotations
 
@@ -17,9 +26,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "export",
         help="write the topics of a bag as Parquet or CSV",
-        description="Write one table per topic, one row per message: log_time_ns, "
-        "stamp_ns where there is a header, and a column per number, named with its "
-        "unit where the topic defines it.",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     parser.add_argument("out", type=Path, metavar="OUT", help="folder of the tables")

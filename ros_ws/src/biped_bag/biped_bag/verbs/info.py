@@ -1,4 +1,11 @@
-"""`biped bag info`: what a bag holds."""
+"""Print what a bag holds, as `ros2 bag info` does, and of which run and walks it is.
+
+The whole bag is checked first.
+
+Exit status:
+    0  printed
+    2  no such bag, or one that is broken
+"""
 
 from __future__ import annotations
 
@@ -17,9 +24,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "info",
         help="print what a bag holds",
-        description="Print what a bag holds, as `ros2 bag info` does, and of which run "
-        "and episodes it is. The whole bag is checked first. Exit status 2 for a bag "
-        "that is broken.",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     add_json_option(parser)

@@ -1,4 +1,14 @@
-"""`biped bag play`: a recorded bag on the graph again."""
+"""Publish a bag's messages with their recorded timing, bytes and quality of service.
+
+Latched topics come first. While it plays, /player/pause, /player/resume and
+/player/step (std_srvs/srv/Trigger) stop it, let it go on, and let one message pass.
+A rate that the machine cannot keep is a warning; no message is left out.
+
+Exit status:
+    0    played to the end
+    2    no such bag or a broken one, or there is nothing in it of what was asked for
+    130  interrupted
+"""
 
 from __future__ import annotations
 
@@ -27,11 +37,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "play",
         help="publish a bag's messages as they were recorded",
-        description="Publish a bag's messages with their recorded timing, bytes and "
-        "quality of service; latched topics first. While it plays, /player/pause, "
-        "/player/resume and /player/step (std_srvs/srv/Trigger) stop it, let it go on, "
-        "and let one message pass. Exit status 0 when played to the end, 2 for wrong "
-        "input, 130 when interrupted.",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     pace = parser.add_mutually_exclusive_group()

@@ -1,4 +1,13 @@
-"""`biped bag recover`: save what is left of a broken bag."""
+"""Rewrite a bag that is cut off or damaged anywhere into a sound one.
+
+What is whole is saved, and what is lost is counted. The broken bag is not changed.
+
+Exit status:
+    0  nothing was lost
+    1  nothing could be recovered, or it could not be written: nothing is left of OUT
+    2  no such bag, or OUT is there already
+    3  something was lost, or may have been
+"""
 
 from __future__ import annotations
 
@@ -20,10 +29,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "recover",
         help="rewrite a broken bag into a sound one, and say what was lost",
-        description="Rewrite a bag that is cut off or damaged anywhere into a sound "
-        "one. The broken bag is not changed. Exit status 0 when nothing was lost, 1 "
-        "when nothing could be recovered or written, 2 for wrong input, 3 when "
-        "something was lost.",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "broken", type=Path, metavar="BROKEN", help="folder or MCAP file"

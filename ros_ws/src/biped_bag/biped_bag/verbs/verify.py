@@ -1,4 +1,14 @@
-"""`biped bag verify`: does a learner, given what was observed, answer as recorded?"""
+"""Let a learner answer the recorded observations again, and compare.
+
+It has the recorded settings, seed and memory; its corrections and results must be the
+recorded ones, bit for bit. ZMP error and T_err are computed anew.
+
+Exit status:
+    0  every correction was compared, and all is the same
+    1  something differs, or could not be compared, or there is nothing to compare
+    2  no such bag or a broken one, or it does not say how the run began
+    3  all that was recorded is the same, but the last walk is cut short
+"""
 
 from __future__ import annotations
 
@@ -28,12 +38,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "verify",
         help="let a learner answer the recorded observations again, and compare",
-        description="Give the recorded observations to a learner with the recorded "
-        "settings, seed and memory, and compare its corrections and results with the "
-        "recorded ones, bit for bit; compute ZMP error and T_err anew. Exit status 0 "
-        "when every correction was compared and all is the same, 1 when something "
-        "differs or could not be compared, 2 for wrong input, 3 when all that was "
-        "recorded is the same but the last walk is cut short.",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     parser.add_argument(
