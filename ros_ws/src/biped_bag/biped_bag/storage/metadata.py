@@ -42,7 +42,7 @@ class BagMetadata:
     """Everything that `metadata.yaml` says."""
 
     topics: list[BagTopic] = field(default_factory=list)
-    """Without definitions."""
+    """As read, without definitions."""
     files: list[FileInfo] = field(default_factory=list)
     custom: Mapping[str, str] = field(default_factory=dict)
     """Remarks of whoever wrote the bag."""

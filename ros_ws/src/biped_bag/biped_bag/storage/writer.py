@@ -41,6 +41,7 @@ class _Channel:
 
     topic: BagTopic
     number: int
+    latched: bool
     count: int = 0
     """Messages in the bag."""
     last: BagMessage | None = None
@@ -109,7 +110,7 @@ class BagWriter:
         definition = topic.definition or message_definition(topic.type_name)
         topic = replace(topic, definition=definition)
         number = self._file.add_channel(topic)
-        self._channels[topic.name] = _Channel(topic, number)
+        self._channels[topic.name] = _Channel(topic, number, topic.latched)
 
     def write(self, message: BagMessage) -> None:
         """Write a message of a known topic, into a new file if this one is full.
@@ -120,7 +121,7 @@ class BagWriter:
         if 0 < self._max_file_bytes <= self._file.size:
             self.split(message.log_ns)
         channel = self._channels[message.topic]
-        if channel.topic.latched:
+        if channel.latched:
             channel.last = message
         self._write(channel, message)
 
