@@ -18,18 +18,15 @@ from typing import Any
 
 from biped_bag.export import FORMATS, export
 from biped_bag.storage.reader import BagReader
+from biped_bag.verbs.bag import add_bag_verb
 from biped_common.command_line import add_json_option, print_json
 
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
-    parser: argparse.ArgumentParser = verbs.add_parser(
-        "export",
-        help="write the topics of a bag as Parquet or CSV",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+    parser = add_bag_verb(
+        verbs, "export", "write the topics of a bag as Parquet or CSV", __doc__, run
     )
-    parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     parser.add_argument("out", type=Path, metavar="OUT", help="folder of the tables")
     parser.add_argument(
         "--format", choices=tuple(FORMATS), default="parquet", help="default parquet"
@@ -41,7 +38,6 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "--force", action="store_true", help="replace tables that are there already"
     )
     add_json_option(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -17,12 +17,12 @@ import math
 import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from biped_bag.player.clock import FLAT_OUT
 from biped_bag.player.play import PlayRequest, play
 from biped_bag.storage.reader import BagReader
+from biped_bag.verbs.bag import add_bag_verb
 from biped_common.command_line import DONE, INTERRUPTED, CommandError, natural
 from biped_common.signals import stop_requests
 from biped_ros.environment import (
@@ -34,13 +34,9 @@ from biped_ros.environment import (
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
-    parser: argparse.ArgumentParser = verbs.add_parser(
-        "play",
-        help="publish a bag's messages as they were recorded",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+    parser = add_bag_verb(
+        verbs, "play", "publish a bag's messages as they were recorded", __doc__, run
     )
-    parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     pace = parser.add_mutually_exclusive_group()
     pace.add_argument(
         "--rate", metavar="R", default="1", help="times as fast (default 1)"
@@ -82,7 +78,6 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         default=DISCOVERY_RANGES[0],
         help="who may listen: processes on this machine (default), or in the subnet",
     )
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

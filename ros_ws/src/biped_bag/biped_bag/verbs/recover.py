@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from biped_bag.recovery.recover import RecoveryFailedError, recover
+from biped_bag.verbs.bag import add_bag_verb
 from biped_common.command_line import add_json_option, print_json
 
 FAILED = 1
@@ -26,26 +27,24 @@ SOMETHING_LOST = 3
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
-    parser: argparse.ArgumentParser = verbs.add_parser(
+    parser = add_bag_verb(
+        verbs,
         "recover",
-        help="rewrite a broken bag into a sound one, and say what was lost",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument(
-        "broken", type=Path, metavar="BROKEN", help="folder or MCAP file"
+        "rewrite a broken bag into a sound one, and say what was lost",
+        __doc__,
+        run,
+        "BROKEN",
     )
     parser.add_argument(
         "out", type=Path, metavar="OUT", help="folder of the new bag; must not exist"
     )
     add_json_option(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Recover and report."""
     try:
-        report = recover(options.broken, options.out)
+        report = recover(options.bag, options.out)
     except RecoveryFailedError as error:
         print(f"biped bag: {error}", file=sys.stderr)
         return FAILED

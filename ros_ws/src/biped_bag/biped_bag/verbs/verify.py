@@ -19,6 +19,7 @@ from typing import Any
 
 from biped_bag.errors import BagError
 from biped_bag.storage.reader import BagReader
+from biped_bag.verbs.bag import add_bag_verb
 from biped_bag.verification.learner import recorded_session
 from biped_bag.verification.report import Verdict, Verification, WalkCheck
 from biped_bag.verification.verify import verify
@@ -35,13 +36,13 @@ _STATUS = {
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
-    parser: argparse.ArgumentParser = verbs.add_parser(
+    parser = add_bag_verb(
+        verbs,
         "verify",
-        help="let a learner answer the recorded observations again, and compare",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        "let a learner answer the recorded observations again, and compare",
+        __doc__,
+        run,
     )
-    parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     parser.add_argument(
         "--run-of",
         type=Path,
@@ -50,7 +51,6 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "replay, which cannot know them, and for cut bags",
     )
     add_json_option(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
