@@ -9,8 +9,9 @@ from tests.biped_bag.bags import RELIABLE, START_NS, TICK_NS, record
 
 from biped_bag.errors import BagError
 from biped_bag.export import export, topic_table
-from biped_bag.reader import BagReader
-from biped_bag.writer import BagWriter, RecordedMessage
+from biped_bag.storage.contents import BagMessage, BagTopic
+from biped_bag.storage.reader import BagReader
+from biped_bag.storage.writer import BagWriter
 from biped_description.joints import JOINT_NAMES
 from biped_ros.cdr import string_message
 from biped_ros.messages import (
@@ -36,9 +37,9 @@ def bag_of(folder, *messages):
     """Return a bag of (topic, serialized message)."""
     writer = BagWriter(folder)
     for topic in dict.fromkeys(topic for topic, _ in messages):
-        writer.add_topic(topic.name, topic.type_name, [RELIABLE])
+        writer.add_topic(BagTopic(topic.name, topic.type_name, [RELIABLE]))
     for i, (topic, data) in enumerate(messages):
-        writer.write(RecordedMessage(topic.name, bytes(data), START_NS + i, START_NS))
+        writer.write(BagMessage(topic.name, bytes(data), START_NS + i, START_NS))
     writer.close()
     return BagReader(folder)
 

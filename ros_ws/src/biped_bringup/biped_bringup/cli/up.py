@@ -10,7 +10,7 @@ from typing import Any
 
 from rich.console import Console
 
-from biped_bag.recorder.run_record import run_record
+from biped_bag.records import run_record
 from biped_bringup.cli.learn import MEMORY_FILE
 from biped_bringup.cli.options import (
     add_settings_options,

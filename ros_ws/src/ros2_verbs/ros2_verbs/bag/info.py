@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from biped_bag.info import info_text
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
 from ros2_verbs.bag_arguments import (
     add_bag_argument,
     add_storage_argument,

@@ -6,8 +6,8 @@ import argparse
 import os
 import sys
 
-from biped_bag.playback import PlayRequest, play
-from biped_bag.reader import BagReader
+from biped_bag.player.play import PlayRequest, play
+from biped_bag.storage.reader import BagReader
 from biped_common.command_line import DONE, INTERRUPTED
 from biped_common.signals import stop_requests
 from biped_ros.environment import node_environment
