@@ -9,10 +9,10 @@ import socket
 import struct
 from pathlib import Path
 
-from ros2_verbs.diagnosis.area import Area
+from ros2_verbs.doctor.area import Area
 
-INTERFACES = Path("/sys/class/net")
-SHARED_MEMORY = Path("/dev/shm")
+_INTERFACES = Path("/sys/class/net")
+_SHARED_MEMORY = Path("/dev/shm")
 
 # linux/if.h
 _FLAGS = {"UP": 0x1, "BROADCAST": 0x2, "LOOPBACK": 0x8, "MULTICAST": 0x1000}
@@ -37,7 +37,7 @@ def platform_area() -> Area:
     return area
 
 
-def network_area(discovery_range: str, folder: Path = INTERFACES) -> Area:
+def network_area(discovery_range: str, folder: Path = _INTERFACES) -> Area:
     """Check that the interfaces which the discovery range needs are there.
 
     Args:
@@ -67,7 +67,7 @@ def network_area(discovery_range: str, folder: Path = INTERFACES) -> Area:
     return area
 
 
-def shared_memory_area(folder: Path = SHARED_MEMORY) -> Area:
+def shared_memory_area(folder: Path = _SHARED_MEMORY) -> Area:
     """Look for files that killed processes have left behind."""
     area = Area("shared_memory", "SHARED MEMORY")
     segments = sorted(folder.glob("fastrtps_*")) if folder.is_dir() else []

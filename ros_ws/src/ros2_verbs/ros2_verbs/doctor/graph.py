@@ -7,21 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rclpy.node import Node
-from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
+from rclpy.qos import QoSCompatibility, qos_check_compatible
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from ros2_verbs.diagnosis.area import Area
-from ros2_verbs.node_names import node_names
-from ros2_verbs.topics import topics_and_types
+from ros2_verbs.doctor.area import Area
+from ros2_verbs.graph.endpoints import TOPICS
+from ros2_verbs.graph.names import node_names
 
 _EVERY_NODE_HAS = ("/parameter_events", "/rosout")
-
-
-@dataclass(frozen=True)
-class End:
-    """A publisher or a subscription."""
-
-    node: str
-    qos: QoSProfile
 
 
 @dataclass(frozen=True)
@@ -30,8 +23,8 @@ class Topic:
 
     name: str
     types: Sequence[str]
-    publishers: Sequence[End]
-    subscriptions: Sequence[End]
+    publishers: Sequence[TopicEndpointInfo]
+    subscriptions: Sequence[TopicEndpointInfo]
 
 
 def topics_of(node: Node) -> list[Topic]:
@@ -40,21 +33,21 @@ def topics_of(node: Node) -> list[Topic]:
         Topic(
             name,
             types,
-            _ends(node.get_publishers_info_by_topic(name)),
-            _ends(node.get_subscriptions_info_by_topic(name)),
+            node.get_publishers_info_by_topic(name),
+            node.get_subscriptions_info_by_topic(name),
         )
-        for name, types in topics_and_types(node, include_hidden=False)
+        for name, types in TOPICS.known(node, hidden=False)
         if name not in _EVERY_NODE_HAS
     ]
 
 
-def node_area(node: Node) -> Area:
-    """Look for nodes of one name: two learners would both correct the waist."""
-    return area_of_nodes([name.full for name in node_names(node, hidden=False)])
+def nodes_of(node: Node) -> list[str]:
+    """Return the names of the nodes on the graph, one for each."""
+    return [name.full for name in node_names(node, hidden=False)]
 
 
-def area_of_nodes(names: Sequence[str]) -> Area:
-    """Look for names that occur twice."""
+def node_area(names: Sequence[str]) -> Area:
+    """Look for names that occur twice: two learners would both correct the waist."""
     area = Area("node", "NODE LIST")
     for name, count in sorted(Counter(names).items()):
         area.item("node", name)
@@ -104,11 +97,18 @@ def qos_area(topics: Sequence[Topic]) -> Area:
     return area
 
 
-def _check_pair(area: Area, topic: Topic, publisher: End, subscription: End) -> None:
-    verdict, reason = qos_check_compatible(publisher.qos, subscription.qos)
+def _check_pair(
+    area: Area,
+    topic: Topic,
+    publisher: TopicEndpointInfo,
+    subscription: TopicEndpointInfo,
+) -> None:
+    verdict, reason = qos_check_compatible(
+        publisher.qos_profile, subscription.qos_profile
+    )
     area.item("topic [type]", f"{topic.name} [{', '.join(topic.types)}]")
-    area.item("publisher node", publisher.node)
-    area.item("subscriber node", subscription.node)
+    area.item("publisher node", publisher.node_name)
+    area.item("subscriber node", subscription.node_name)
     good = verdict == QoSCompatibility.OK
     area.item("compatibility status", "OK" if good else reason)
     detail = reason.partition(": ")[2]
@@ -120,7 +120,3 @@ def _check_pair(area: Area, topic: Topic, publisher: End, subscription: End) -> 
         area.warnings.append(
             f"QoS compatibility warning found on topic '{topic.name}': {detail}"
         )
-
-
-def _ends(infos: Sequence[object]) -> list[End]:
-    return [End(info.node_name, info.qos_profile) for info in infos]  # type: ignore[attr-defined]

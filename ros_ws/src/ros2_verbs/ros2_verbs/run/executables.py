@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib.metadata import entry_points
 from pathlib import Path
 
 from ament_index_python.packages import (
@@ -18,6 +17,7 @@ from ament_index_python.packages import (
     get_packages_with_prefixes,
 )
 
+from biped_common.entry_points import entry_points
 from ros2_verbs.errors import VerbError
 
 _GROUP = "biped.nodes"
@@ -25,9 +25,8 @@ _GROUP = "biped.nodes"
 
 def packages() -> list[str]:
     """Return the names of all packages that are installed either way."""
-    names = set(get_packages_with_prefixes())
-    names |= {entry.name.partition("/")[0] for entry in entry_points(group=_GROUP)}
-    return sorted(names)
+    by_pip = {name.partition("/")[0] for name in entry_points(_GROUP)}
+    return sorted(by_pip.union(get_packages_with_prefixes()))
 
 
 def executables(package: str) -> dict[str, list[list[str]]]:
@@ -76,14 +75,14 @@ def _executable_files(folder: Path) -> list[Path]:
         if path.is_file()
         and os.access(path, os.X_OK)
         and not any(
-            part.startswith(".") for part in path.relative_to(folder).parts[:-1]
+            part.startswith(".") for part in path.relative_to(folder).parent.parts
         )
     )
 
 
 def _modules(package: str) -> dict[str, str]:
     return {
-        entry.name.partition("/")[2]: entry.module
-        for entry in entry_points(group=_GROUP)
-        if entry.name.partition("/")[0] == package
+        name.removeprefix(f"{package}/"): point.module
+        for name, point in entry_points(_GROUP).items()
+        if name.startswith(f"{package}/")
     }

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, requires, version
 
 from biped_ros.environment import LAST_DOMAIN
-from ros2_verbs.diagnosis.area import Area
+from ros2_verbs.doctor.area import Area
+from ros2_verbs.environment import discovery_range, domain_text
 
 DISTRIBUTION = "jazzy"
 _OURS = "biped"
@@ -16,12 +16,7 @@ _RANGES = ("SUBNET", "LOCALHOST", "OFF", "SYSTEM_DEFAULT")
 _LAST_SAFE_DOMAIN = 101
 
 
-def discovery_range(environment: Mapping[str, str] = os.environ) -> str:
-    """Return who is looked for on the network."""
-    return environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
-
-
-def ros_area(environment: Mapping[str, str] = os.environ) -> Area:
+def ros_area(environment: Mapping[str, str]) -> Area:
     """Check distribution, domain and discovery range."""
     area = Area("ros", "ROS 2 INFORMATION")
     wheels = DISTRIBUTION if _version(f"ros-{DISTRIBUTION}-rclpy") else None
@@ -35,7 +30,7 @@ def ros_area(environment: Mapping[str, str] = os.environ) -> Area:
         )
     elif DISTRIBUTION not in (sourced, wheels):
         area.warnings.append(f"Distribution is not {DISTRIBUTION}, which is tested.")
-    _check_domain(area, environment.get("ROS_DOMAIN_ID") or "0")
+    _check_domain(area, domain_text(environment))
     chosen = discovery_range(environment)
     area.item("discovery range", chosen)
     if chosen not in _RANGES:

@@ -7,19 +7,10 @@ What was found goes to stderr, the summary and reports to stdout.
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 
-import rclpy
-
-from ros2_verbs.diagnosis import graph, host, installation
-from ros2_verbs.diagnosis.area import Area, complaints, report, summary
-from ros2_verbs.graph_node import (
-    add_node_arguments,
-    discover,
-    graph_node,
-    settled,
-)
+from ros2_verbs.doctor.area import complaints, report, summary
+from ros2_verbs.options import add_node_arguments
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +34,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Examine and report."""
-    areas = _examine(args)
+    # Not above: the help of `ros2` alone need not wait for rclpy.
+    from ros2_verbs.doctor.examination import examine
+
+    areas = examine(args)
     if args.report:
         for area in areas:
             print(report(area))
@@ -57,26 +51,3 @@ def main(args: argparse.Namespace) -> int:
         for area in failed:
             print(report(area))
     return 1 if failed else 0
-
-
-def _examine(args: argparse.Namespace) -> list[Area]:
-    environment = os.environ
-    before = [
-        host.network_area(installation.discovery_range(environment)),
-        installation.package_area(),
-        host.platform_area(),
-        installation.ros_area(environment),
-        host.shared_memory_area(),
-    ]
-    with graph_node(args) as node:
-        discover(args, until=settled(node))
-        topics = graph.topics_of(node)
-        return [
-            *before,
-            installation.middleware_area(
-                rclpy.get_rmw_implementation_identifier(), environment
-            ),
-            graph.node_area(node),
-            graph.topic_area(topics),
-            graph.qos_area(topics),
-        ]

@@ -7,10 +7,13 @@ a number out of range, a list that is too long. Nothing is guessed.
 
 from __future__ import annotations
 
+import argparse
 import importlib
+import sys
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import yaml
 from rosidl_parser.definition import (
     AbstractGenericString,
@@ -21,7 +24,8 @@ from rosidl_parser.definition import (
 )
 
 from ros2_verbs.errors import VerbError
-from ros2_verbs.message_yaml import fields_of, type_name
+from ros2_verbs.messages.text import fields_of, type_name
+from ros2_verbs.options import completed
 
 Stamp = Callable[[Any], None]
 """Sets a field of the message to a builtin_interfaces.msg.Time."""
@@ -29,6 +33,34 @@ Stamp = Callable[[Any], None]
 _TIME = "builtin_interfaces/msg/Time"
 _HEADER = "std_msgs/msg/Header"
 _FLOATS = ("float", "double", "long double")
+
+
+def add_values_arguments(
+    parser: argparse.ArgumentParser, what: str, completer: Callable[..., list[str]]
+) -> None:
+    """Add the values, and --stdin to read them from there.
+
+    Args:
+        parser: of the verb.
+        what: said of the values, in its help.
+        completer: of argcomplete, offers all values to be edited.
+    """
+    values = parser.add_mutually_exclusive_group()
+    completed(
+        values.add_argument("values", nargs="?", default="{}", help=what), completer
+    )
+    values.add_argument(
+        "--stdin", action="store_true", help="read the values from standard input"
+    )
+
+
+def given_values(args: argparse.Namespace) -> dict[str, Any]:
+    """Return the values that the arguments name.
+
+    Raises:
+        VerbError: they are no YAML, or not a dictionary.
+    """
+    return values_of(sys.stdin.read() if args.stdin else args.values)
 
 
 def values_of(text: str) -> dict[str, Any]:
@@ -142,18 +174,12 @@ def _number(kind: str, given: Any, path: str) -> Any:
         if number is not None:
             return float(number)
         raise _misfit(path, given, "a number")
-    least, most = _bounds(kind)
+    # Jazzy's messages do not check for themselves.
+    bounds = np.iinfo(kind)
+    least, most = int(bounds.min), int(bounds.max)
     if number is not None and number == number // 1 and least <= number <= most:
         return int(number)
     raise _misfit(path, given, f"a whole number from {least} to {most} ({kind})")
-
-
-def _bounds(kind: str) -> tuple[int, int]:
-    # uint8, int16, ...: Jazzy's messages do not check for themselves.
-    bits = int(kind.removeprefix("u").removeprefix("int"))
-    if kind.startswith("u"):
-        return 0, 2**bits - 1
-    return -(2 ** (bits - 1)), 2 ** (bits - 1) - 1
 
 
 def _octet(given: Any, path: str) -> bytes:

@@ -41,13 +41,18 @@ class Shown:
 EVERYTHING = Shown()
 
 
-def to_plain(message: Any, shown: Shown = EVERYTHING) -> dict[str, Any]:
+def to_plain(
+    message: Any, shown: Shown = EVERYTHING, *, octets: bool = False
+) -> dict[str, Any]:
     """Return a message as dictionaries, lists, numbers and strings.
 
-    Octets become the character of their number, as in the original.
+    Args:
+        message: any.
+        shown: how much of it.
+        octets: as bytes; else as the characters of their numbers, as in the original.
     """
     return {
-        name: _plain(getattr(message, name), shown, kind)
+        name: _plain(getattr(message, name), shown, kind, octets)
         for name, kind in fields_of(message)
     }
 
@@ -67,10 +72,7 @@ def to_yaml(message: Any, shown: Shown = EVERYTHING, flow_style: bool = False) -
 
 def to_csv(message: Any, shown: Shown = EVERYTHING) -> str:
     """Return the values of all fields, nested ones too, separated by commas."""
-    return _joined(
-        _separated(getattr(message, name), shown, kind)
-        for name, kind in fields_of(message)
-    )
+    return _joined(to_plain(message, shown, octets=True))
 
 
 def to_json(value: Any) -> str:
@@ -87,7 +89,7 @@ def to_json(value: Any) -> str:
     elif isinstance(value, str):
         plain = _decoded(value, otherwise=value)
     else:
-        plain = _plain(value, EVERYTHING, None)
+        plain = _plain(value, EVERYTHING, None, octets=False)
     return json.dumps(_finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
 
 
@@ -124,54 +126,36 @@ def _dump(
     return text
 
 
-def _plain(value: Any, shown: Shown, kind: Any) -> Any:
+def _plain(value: Any, shown: Shown, kind: Any, octets: bool) -> Any:
     if isinstance(value, bool | int | float):
         return value
     if isinstance(value, str):
-        return _text(value, shown)
+        return (
+            _cut(value, shown) if shown.strings else f"<string length: <{len(value)}>>"
+        )
     if isinstance(value, bytes):
-        return _cut(value.decode("latin-1"), shown)
+        return _cut(value if octets else value.decode("latin-1"), shown)
     if isinstance(value, _SEQUENCES):
         if kind is not None and not shown.arrays:
             return _abbreviated(value, kind)
         if isinstance(value, array.array | np.ndarray):
             value = value.tolist()
-        elements = [_plain(element, shown, None) for element in value[: shown.length]]
+        elements = [
+            _plain(element, shown, None, octets) for element in value[: shown.length]
+        ]
         return elements + [_CUT] * (len(value) > len(elements))
-    if isinstance(value, np.generic):
-        return value.item()
-    return to_plain(value, shown)
+    return to_plain(value, shown, octets=octets)
 
 
-def _separated(value: Any, shown: Shown, kind: Any) -> str:
-    if isinstance(value, str):
-        return _text(value, shown)
-    if isinstance(value, bytes):
-        return str(_cut(value, shown))
-    if isinstance(value, _SEQUENCES):
-        if kind is not None and not shown.arrays:
-            return _abbreviated(value, kind)
-        if isinstance(value, array.array | np.ndarray):
-            value = value.tolist()
-        parts = [_separated(element, shown, None) for element in value[: shown.length]]
-        return _joined(parts + [_CUT] * (len(value) > len(parts)))
-    if isinstance(value, bool | int | float | np.generic):
-        return str(value)
-    return to_csv(value, shown)
-
-
-def _joined(parts: Any) -> str:
+def _joined(plain: Any) -> str:
+    if isinstance(plain, dict):
+        plain = list(plain.values())
+    if not isinstance(plain, list):
+        return str(plain)
     # Empty values in front leave no comma: the original's habit, which scripts know.
     text = ""
-    for part in parts:
+    for part in map(_joined, plain):
         text = f"{text},{part}" if text else part
-    return text
-
-
-def _text(value: str, shown: Shown) -> str:
-    if not shown.strings:
-        return f"<string length: <{len(value)}>>"
-    text: str = _cut(value, shown)
     return text
 
 

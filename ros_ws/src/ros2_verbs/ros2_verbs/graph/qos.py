@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from copy import copy
+from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -18,14 +20,14 @@ from rclpy.qos import (
 LISTENING_DEPTH = 1000
 """History of a listener: two seconds at 500 Hz, so that printing may pause."""
 
-_PARTS = (
-    "qos_depth",
-    "qos_history",
-    "qos_reliability",
-    "qos_durability",
-    "qos_liveliness",
-    "qos_liveliness_lease_duration_seconds",
-)
+_POLICIES: dict[str, Any] = {
+    "history": HistoryPolicy,
+    "reliability": ReliabilityPolicy,
+    "durability": DurabilityPolicy,
+    "liveliness": LivelinessPolicy,
+}
+_PARTS = (*_POLICIES, "depth", "liveliness_lease_duration_seconds")
+"""Of a profile, each with an option of its own."""
 
 
 def add_qos_arguments(
@@ -53,12 +55,7 @@ def add_qos_arguments(
         type=int,
         help=f"queue size to {doing} with",
     )
-    for name, policy in (
-        ("history", HistoryPolicy),
-        ("reliability", ReliabilityPolicy),
-        ("durability", DurabilityPolicy),
-        ("liveliness", LivelinessPolicy),
-    ):
+    for name, policy in _POLICIES.items():
         group.add_argument(
             f"--qos-{name}",
             choices=policy.short_keys(),
@@ -75,15 +72,10 @@ def add_qos_arguments(
 
 def profile_of(args: argparse.Namespace) -> QoSProfile:
     """Return the profile that the options describe."""
-    profile = QoSPresetProfiles.get_from_short_key(args.qos_profile)
-    if args.qos_history:
-        profile.history = HistoryPolicy.get_from_short_key(args.qos_history)
-    if args.qos_durability:
-        profile.durability = DurabilityPolicy.get_from_short_key(args.qos_durability)
-    if args.qos_reliability:
-        profile.reliability = ReliabilityPolicy.get_from_short_key(args.qos_reliability)
-    if args.qos_liveliness:
-        profile.liveliness = LivelinessPolicy.get_from_short_key(args.qos_liveliness)
+    profile = _preset(args.qos_profile)
+    for name, policy in _POLICIES.items():
+        if chosen := getattr(args, f"qos_{name}"):
+            setattr(profile, name, policy.get_from_short_key(chosen))
     if args.qos_liveliness_lease_duration_seconds:
         profile.liveliness_lease_duration = Duration(
             seconds=args.qos_liveliness_lease_duration_seconds
@@ -100,45 +92,38 @@ def listening_profile(node: Node, topic: str, args: argparse.Namespace) -> QoSPr
 
     The depth is `LISTENING_DEPTH` unless it was given.
     """
-    if any(getattr(args, part, None) is not None for part in _PARTS):
+    if any(getattr(args, f"qos_{part}", None) is not None for part in _PARTS):
         profile = profile_of(args)
     else:
-        preset = getattr(args, "qos_profile", "sensor_data")
-        profile = QoSPresetProfiles.get_from_short_key(preset)
+        profile = _preset(getattr(args, "qos_profile", "sensor_data"))
         _suit_publishers(profile, node, topic)
     if getattr(args, "qos_depth", None) is None:
         profile.depth = LISTENING_DEPTH
     return profile
 
 
+def _preset(name: str) -> QoSProfile:
+    # A copy, for it is going to be changed.
+    return copy(QoSPresetProfiles.get_from_short_key(name))
+
+
 def _suit_publishers(profile: QoSProfile, node: Node, topic: str) -> None:
     offers = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     if not offers:
         return
-    profile.reliability = (
-        ReliabilityPolicy.RELIABLE
-        if _all_offer(
-            [offer.reliability == ReliabilityPolicy.RELIABLE for offer in offers],
-            "QoSReliabilityPolicy.RELIABLE",
-            "QoSReliabilityPolicy.BEST_EFFORT",
-        )
-        else ReliabilityPolicy.BEST_EFFORT
-    )
-    profile.durability = (
-        DurabilityPolicy.TRANSIENT_LOCAL
-        if _all_offer(
-            [offer.durability == DurabilityPolicy.TRANSIENT_LOCAL for offer in offers],
-            "QoSDurabilityPolicy.TRANSIENT_LOCAL",
-            "QoSDurabilityPolicy.VOLATILE",
-        )
-        else DurabilityPolicy.VOLATILE
-    )
+    for name, better, common in (
+        ("reliability", ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT),
+        ("durability", DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE),
+    ):
+        offered = [getattr(offer, name) == better for offer in offers]
+        setattr(profile, name, better if all(offered) else common)
+        if any(offered) and not all(offered):
+            print(
+                f"Some, but not all, publishers are offering {_name(better)}. Falling "
+                f"back to {_name(common)} as it will connect to all publishers"
+            )
 
 
-def _all_offer(offered: list[bool], better: str, common: str) -> bool:
-    if any(offered) and not all(offered):
-        print(
-            f"Some, but not all, publishers are offering {better}. Falling back to "
-            f"{common} as it will connect to all publishers"
-        )
-    return all(offered)
+def _name(policy: ReliabilityPolicy | DurabilityPolicy) -> str:
+    # The old one, which the original still says.
+    return f"QoS{type(policy).__name__}.{policy.name}"

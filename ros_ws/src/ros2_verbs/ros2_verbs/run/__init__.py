@@ -15,9 +15,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from ros2_verbs.completion import completed
 from ros2_verbs.errors import VerbError
-from ros2_verbs.executables import command_of, executables, packages
+from ros2_verbs.options import completed
+from ros2_verbs.run.executables import command_of, executables, packages
 
 _BY_SIGNAL = 128
 
@@ -96,13 +96,11 @@ def _handlers(
             signal.signal(number, handler)
 
 
-def _complete_packages(prefix: str, **_: Any) -> list[str]:
+def _complete_packages(**_: Any) -> list[str]:
     return packages()
 
 
-def _complete_executables(
-    prefix: str, parsed_args: argparse.Namespace, **_: Any
-) -> list[str]:
+def _complete_executables(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
     try:
         return list(executables(parsed_args.package_name))
     except VerbError:

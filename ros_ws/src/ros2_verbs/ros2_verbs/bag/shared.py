@@ -1,4 +1,4 @@
-"""Options that the verbs on bags share, and their errors as the verbs' own."""
+"""What the verbs on bags share: options, and the form of their errors."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from biped_bag.errors import BagError
-from biped_common.settings import SettingsError
+from biped_common.errors import BipedError
 from ros2_verbs.errors import VerbError
 
 
 def add_bag_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the bag to be read."""
+    """Add the bag to be read, and -s."""
     parser.add_argument("bag_path", type=Path, help="bag: its folder, or an MCAP file")
+    add_storage_argument(parser)
 
 
 def add_storage_argument(parser: argparse.ArgumentParser) -> None:
@@ -30,8 +30,8 @@ def add_storage_argument(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def bag_errors() -> Iterator[None]:
-    """Turn errors of bags and of the recorder's settings into those of verbs."""
+    """Have errors of bags, and of the recorder's settings, begin as rosbag2's do."""
     try:
         yield
-    except (BagError, SettingsError) as error:
+    except BipedError as error:
         raise VerbError(f"[ERROR] [ros2bag]: {error}") from None

@@ -6,15 +6,12 @@ import importlib
 from pathlib import Path
 from typing import Any
 
-from ament_index_python import (
-    get_resource,
-    get_resources,
-    has_resource,
-)
+from ament_index_python import get_resource, get_resources, has_resource
 
 from ros2_verbs.errors import VerbError
 
-KINDS = ("msg", "srv", "action")
+KINDS = {"msg": "message", "srv": "service", "action": "action"}
+"""What the interfaces of each kind are called."""
 _INDEX = "rosidl_interfaces"
 # Every interface has such a file, and the parts of services and actions have none.
 _LISTED = ".idl"
@@ -51,6 +48,38 @@ def all_interfaces(kind: str) -> list[str]:
     ]
 
 
+def complete_message_types(**_: Any) -> list[str]:
+    """Return all message types, for the shell."""
+    return all_interfaces("msg")
+
+
+def interface_class(name: str, kind: str) -> Any:
+    """Return the class of a type, `std_msgs/msg/String` or `std_msgs/String`.
+
+    Args:
+        name: of the type.
+        kind: "msg" or "srv", which may be left out in the name.
+
+    Raises:
+        VerbError: the name is malformed, or there is no such interface.
+    """
+    problem = f"The passed {KINDS[kind]} type is invalid: '{name}'"
+    parts = name.split("/")
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or parts[1] != kind or not all(p.isidentifier() for p in parts):
+        raise VerbError(f"{problem} is not of the form package/{kind}/Type")
+    package, _, type_name = parts
+    try:
+        module = importlib.import_module(f"{package}.{kind}")
+    except ModuleNotFoundError:
+        raise VerbError(f"{problem}, there is no package '{package}'") from None
+    try:
+        return getattr(module, type_name)
+    except AttributeError:
+        raise VerbError(f"{problem}, '{package}' has no such {KINDS[kind]}") from None
+
+
 def definition_file(name: str) -> Path:
     """Return the file in which an interface is defined.
 
@@ -68,42 +97,3 @@ def definition_file(name: str) -> Path:
     if kind not in KINDS or not file.is_file():
         raise VerbError(f"Could not find the interface '{name}'")
     return file
-
-
-def message_class(name: str) -> Any:
-    """Return the class of a message type, `std_msgs/msg/String` or `std_msgs/String`.
-
-    Raises:
-        VerbError: the name is malformed, or there is no such message.
-    """
-    parts = name.split("/")
-    if len(parts) == 2:
-        parts.insert(1, "msg")
-    return _interface_class(name, parts, "msg", "message")
-
-
-def service_class(name: str) -> Any:
-    """Return the class of a service type, `std_srvs/srv/SetBool` or short of `srv`.
-
-    Raises:
-        VerbError: the name is malformed, or there is no such service.
-    """
-    parts = name.split("/")
-    if len(parts) == 2:
-        parts.insert(1, "srv")
-    return _interface_class(name, parts, "srv", "service")
-
-
-def _interface_class(name: str, parts: list[str], kind: str, noun: str) -> Any:
-    problem = f"The passed {noun} type is invalid: '{name}'"
-    if len(parts) != 3 or parts[1] != kind or not all(p.isidentifier() for p in parts):
-        raise VerbError(f"{problem} is not of the form package/{kind}/Type")
-    package, _, type_name = parts
-    try:
-        module = importlib.import_module(f"{package}.{kind}")
-    except ModuleNotFoundError:
-        raise VerbError(f"{problem}, there is no package '{package}'") from None
-    try:
-        return getattr(module, type_name)
-    except AttributeError:
-        raise VerbError(f"{problem}, '{package}' has no such {noun}") from None

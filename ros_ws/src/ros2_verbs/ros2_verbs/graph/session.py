@@ -1,16 +1,18 @@
-"""A node for the duration of one verb, and the options that go with it."""
+"""A node for the duration of one verb: join the graph, look around, spin, leave."""
 
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 import rclpy
+from rclpy.exceptions import NameValidationException
 from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
@@ -19,12 +21,11 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from biped_common.signals import stop_requests
+from ros2_verbs.errors import VerbError
+from ros2_verbs.options import DISCOVERY_S
 
-HIDDEN_PREFIX = "_"
-"""Nodes and topics whose names begin so are not listed unless asked for."""
-DISCOVERY_S = 0.5
+_Seen = TypeVar("_Seen")
 
-_NAME = "_ros2cli"
 # The rest of Fast DDS's announcement period of 3 s.
 _PATIENCE_S = 2.5
 # A graph that has not changed for so long is known: the parts of one node come within
@@ -34,30 +35,6 @@ _GLANCE_S = 1.0
 # How often the graph is looked at, and how soon Ctrl-C is obeyed.
 _POLL_S = 0.01
 _TURN_S = 0.1
-
-
-def add_graph_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add --spin-time, --use-sim-time and --no-daemon."""
-    parser.add_argument(
-        "--no-daemon",
-        action="store_true",
-        help="accepted for compatibility: there is no daemon here",
-    )
-    add_node_arguments(parser)
-
-
-def add_node_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add --spin-time and --use-sim-time."""
-    parser.add_argument(
-        "--spin-time",
-        type=float,
-        default=DISCOVERY_S,
-        metavar="SECONDS",
-        help=f"time to wait for discovery (default: {DISCOVERY_S} s)",
-    )
-    parser.add_argument(
-        "-s", "--use-sim-time", action="store_true", help="take time from /clock"
-    )
 
 
 @contextmanager
@@ -70,18 +47,24 @@ def graph_node(args: argparse.Namespace, name: str | None = None) -> Iterator[No
 
     Yields:
         The node. Nothing has been discovered yet: see `discover`.
+
+    Raises:
+        VerbError: something on the graph was to have a name that it cannot have.
     """
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     node = None
     try:
         sim_time = getattr(args, "use_sim_time", False)
         node = rclpy.create_node(
-            name or f"{_NAME}_{os.getpid()}",
+            name or f"_ros2cli_{os.getpid()}",
             enable_rosout=False,
             start_parameter_services=False,
             parameter_overrides=[Parameter("use_sim_time", value=sim_time)],
         )
         yield node
+    except NameValidationException as error:
+        # Its second and third line show where; the verb has one.
+        raise VerbError(" ".join(str(error).splitlines()[:2])) from None
     finally:
         if node is not None:
             node.destroy_node()
@@ -89,10 +72,7 @@ def graph_node(args: argparse.Namespace, name: str | None = None) -> Iterator[No
 
 
 def discover(
-    args: argparse.Namespace,
-    until: Callable[[], bool] | None = None,
-    *,
-    at_once: bool = False,
+    args: argparse.Namespace, until: Callable[[], bool], *, at_once: bool = False
 ) -> bool:
     """Let the node get to know the graph.
 
@@ -104,21 +84,20 @@ def discover(
     Args:
         args: with `spin_time` [s], waited in any case, since not all comes at once.
         until: whether that is known without which the verb can do nothing.
-        at_once: nothing else is needed; end as soon as `until` holds.
+        at_once: end as soon as that holds; nothing else is needed.
 
     Returns:
         Whether `until` holds.
     """
-    spin_time_s = getattr(args, "spin_time", DISCOVERY_S)
-    is_default = spin_time_s == DISCOVERY_S
-    longest_s = spin_time_s + (_PATIENCE_S if until and is_default else 0.0)
+    is_default = args.spin_time == DISCOVERY_S
+    longest_s = args.spin_time + (_PATIENCE_S if is_default else 0.0)
     began = time.monotonic()
     while True:
-        holds = until is not None and until()
+        holds = until()
         waited_s = time.monotonic() - began
         if waited_s >= longest_s:
             return holds
-        if holds and (at_once or waited_s >= spin_time_s):
+        if holds and (at_once or waited_s >= args.spin_time):
             return True
         time.sleep(_POLL_S)
 
@@ -146,9 +125,18 @@ def settled(node: Node) -> Callable[[], bool]:
     return holds
 
 
-def glance(node: Node) -> None:
+def whole_graph(args: argparse.Namespace, look: Callable[[Node], _Seen]) -> _Seen:
+    """Return what a look at the graph finds, once it has settled."""
+    with graph_node(args) as node:
+        discover(args, settled(node))
+        return look(node)
+
+
+def glance(args: argparse.Namespace, look: Callable[[Node], _Seen]) -> _Seen:
     """Look at the graph for the shell: a TAB that takes longer seems to hang."""
-    wait_until(settled(node), _GLANCE_S)
+    with graph_node(args) as node:
+        wait_until(settled(node), _GLANCE_S)
+        return look(node)
 
 
 def wait_until(condition: Callable[[], bool], timeout_s: float) -> bool:
@@ -176,7 +164,7 @@ def caught(finished: Future, callback: Callable[..., None]) -> Callable[..., Non
 def spin(
     node: Node,
     finished: Future,
-    timeout_s: float | None = None,
+    timeout_s: float = math.inf,
     executor: Executor | None = None,
 ) -> bool:
     """Serve the node's callbacks until one of them sets the result of `finished`.
@@ -184,7 +172,7 @@ def spin(
     Args:
         node: any; see `executor`.
         finished: its exception, if one is set, is raised here.
-        timeout_s: None waits for ever.
+        timeout_s: how long at most.
         executor: by default the events executor, which costs a quarter of the others
             but knows no guard conditions and no callbacks of `(message, info)`.
 
@@ -193,14 +181,14 @@ def spin(
     """
     chosen = EventsExecutor() if executor is None else executor
     chosen.add_node(node)
-    end = None if timeout_s is None else time.monotonic() + timeout_s
+    end = time.monotonic() + timeout_s
     # A signal ends a turn; within a callback rclpy would report it as a failure.
     with stop_requests() as stops:
         while not finished.done() and not stops:
-            left = _TURN_S if end is None else min(_TURN_S, end - time.monotonic())
-            if left <= 0.0:
+            left_s = min(_TURN_S, end - time.monotonic())
+            if left_s <= 0.0:
                 break
-            chosen.spin_until_future_complete(finished, timeout_sec=left)
+            chosen.spin_until_future_complete(finished, timeout_sec=left_s)
     chosen.remove_node(node)
     if stops:
         signal.raise_signal(stops[0])
