@@ -277,7 +277,9 @@ def test_without_noise_a_disturbed_walk_draws_as_many_numbers(new_walker, shaky_
     assert states[0] == states[1]
 
 
-@pytest.mark.parametrize("constant", [{}, {"friction": 0.7, "torque_limit_factor": 0.9}])
+@pytest.mark.parametrize(
+    "constant", [{}, {"friction": 0.7, "torque_limit_factor": 0.9}]
+)
 def test_a_walk_without_chance_draws_nothing(new_walker, shaky_walk, constant):
     walker = new_walker(STURDY, constant)
     before = walker.rng.bit_generator.state
