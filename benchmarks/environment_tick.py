@@ -11,7 +11,6 @@ import statistics
 import time
 
 import numpy as np
-import pybullet
 
 from benchmarks.report import Figure
 from biped_bringup.run_settings import RunSettings
@@ -73,6 +72,6 @@ def _bare_tick_s(
     for q, dq in commands:
         world.command(q, dq)
         start = time.perf_counter()
-        pybullet.stepSimulation(physicsClientId=world.client)
+        world.step()
         spent += time.perf_counter() - start
     return spent / len(commands)

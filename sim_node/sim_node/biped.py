@@ -17,19 +17,20 @@ import numpy as np
 
 from biped_common.timing import seconds
 from biped_description import kernels
+from biped_description.links import LINK_NAMES
 from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
-from sim_node.contact import NO_CONTACT, FloorContact, floor_contact
+from sim_node.contact import NO_CONTACT, FloorContact
 from sim_node.control_tick import ControlTick, phase_flags
 from sim_node.disturbance import Disturbance, draw_disturbance
-from sim_node.errors import SnapshotError
+from sim_node.engines import plant_of
+from sim_node.errors import SnapshotError, WorldClosedError
 from sim_node.joint_references import JointReferences, PlannedPhase, solve, standing
 from sim_node.limit_watch import LimitCounts, LimitWatch
 from sim_node.settings import SimSettings
 from sim_node.tick_sums import sum_up
-from sim_node.world import World
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
@@ -100,12 +101,10 @@ class SimulatedBiped:
         self.on_tick = on_tick
         self._rng = rng
         self._start = start
-        self.world = World(robot)
-        self.world.set_friction(settings.disturbances.friction)
-        self.world.set_torque_limits(
-            robot.torque_limit_nm * settings.disturbances.torque_limit_factor
-        )
         sizes = settings.disturbances
+        torque_limits_nm = robot.torque_limit_nm * sizes.torque_limit_factor
+        self.world = plant_of(settings.engine)(robot, sizes.friction, torque_limits_nm)
+        self._open = True
         self._noise_sizes = np.array(
             [
                 [sizes.position_noise_m],
@@ -116,7 +115,7 @@ class SimulatedBiped:
         self._limit_watch = LimitWatch(
             settings.limits,
             robot.settings.velocity_limit_rad_s,
-            self.world.torque_limits,
+            torque_limits_nm.tolist(),
         )
         self._references = standing(start)
         self._snapshots: set[BipedSnapshot] = set()
@@ -124,7 +123,7 @@ class SimulatedBiped:
         self._ticks: list[ControlTick] = []
         self._disturbance = draw_disturbance(
             replace(settings.disturbances, push_force_n=0.0, mass_error=0.0),
-            self.world.n_links,
+            len(LINK_NAMES),
             np.random.default_rng(0),
         )
         self._watch = _Watch()
@@ -138,16 +137,16 @@ class SimulatedBiped:
 
         The clock goes on by one tick, so that no two observations share a time.
         """
-        self.world.check_open()
+        self._check_open()
         self.world.load(self._standing)
         disturbances = self.settings.disturbances
         if disturbances.random:
             self._disturbance = draw_disturbance(
-                disturbances, self.world.n_links, self._rng
+                disturbances, len(LINK_NAMES), self._rng
             )
         if disturbances.mass_error > 0.0:
             self.world.set_mass_factors(self._disturbance.mass_factors)
-        contact = floor_contact(self.world.contacts(), self.world.left_sole, (0.0, 0.0))
+        contact = self.world.contact(held=(0.0, 0.0))
         _, velocity = self.world.waist()
         self._watch = _Watch(
             episode=episode,
@@ -227,7 +226,8 @@ class SimulatedBiped:
         references = self._references
         row = at - references.segment.first_tick
         dq_reference = references.dq[row]
-        self.world.step(references.q[row], dq_reference)
+        self.world.command(references.q[row], dq_reference)
+        self.world.step()
         tick = self._read(
             references.q[row + 1],
             dq_reference,
@@ -318,7 +318,7 @@ class SimulatedBiped:
 
     def snapshot(self) -> BipedSnapshot:
         """Keep the walk as it stands, so that `restore` continues it bit for bit."""
-        self.world.check_open()
+        self._check_open()
         snapshot = BipedSnapshot(
             world_state=self.world.save(),
             watch=self._watch.copy(),
@@ -356,13 +356,18 @@ class SimulatedBiped:
         self.world.release(snapshot.world_state)
 
     def close(self) -> None:
-        """End the world."""
+        """End the world; harmless when repeated."""
+        self._open = False
         self.world.close()
 
     # -- inner steps ---------------------------------------------------------------
 
+    def _check_open(self) -> None:
+        if not self._open:
+            raise WorldClosedError("this world has been closed")
+
     def _check_own(self, snapshot: BipedSnapshot) -> None:
-        self.world.check_open()
+        self._check_open()
         # The engine numbers states per world and uses numbers again.
         if snapshot not in self._snapshots:
             raise SnapshotError(
@@ -370,7 +375,7 @@ class SimulatedBiped:
             )
 
     def _check_walking(self) -> None:
-        self.world.check_open()
+        self._check_open()
         if self._watch.end_cause is not None:
             raise ValueError(f"the walk is over: {self._watch.end_cause}")
 
@@ -380,7 +385,8 @@ class SimulatedBiped:
         self.world.place(pose[0][0], q)
         still = [0.0] * len(q)
         for _ in range(_SETTLING_TICKS):
-            self.world.step(q.tolist(), still)
+            self.world.command(q.tolist(), still)
+            self.world.step()
 
     def _read(
         self,
@@ -393,10 +399,8 @@ class SimulatedBiped:
         watch = self._watch
         watch.clock_ticks += 1
         watch.control_tick += 1
-        position, velocity, torque = self.world.joint_states()
-        contact = floor_contact(
-            self.world.contacts(), self.world.left_sole, watch.contact[:2]
-        )
+        position, velocity, torque = self.world.joints()
+        contact = self.world.contact(watch.contact[:2])
         watch.contact = contact
         zmp_error_m = math.hypot(
             contact.zmp_x_m - zmp_reference[0], contact.zmp_y_m - zmp_reference[1]

@@ -10,7 +10,6 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-import pybullet
 from visualization_msgs.msg import Marker
 
 from biped_description.settings import RobotSettings
@@ -24,7 +23,7 @@ from biped_ros.markers import (
 from msgs_json import topics
 from msgs_json.segment import WaistSegment
 from sim_node.control_tick import ControlTick
-from sim_node.world import World
+from sim_node.physics import Physics
 
 Point = tuple[float, float]
 
@@ -69,15 +68,6 @@ def support_polygon(robot: RobotSettings, feet: Sequence[Point]) -> list[Point]:
     return [rear[0], front[0], front[1], front[2], rear[2], rear[3]]
 
 
-def torso_pose(world: World) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the position [m] of the waist, the torso's frame, and its quaternion."""
-    _, orientation = pybullet.getBasePositionAndOrientation(
-        world.robot, physicsClientId=world.client
-    )
-    position, _ = world.waist()
-    return tuple(position), orientation
-
-
 class MarkerPublisher:
     """Publishes markers and torso pose at every n-th control tick of a walk."""
 
@@ -109,7 +99,7 @@ class MarkerPublisher:
         self._walked: deque[tuple[float, ...]] = deque(maxlen=_WALKED_POINTS)
         self._last_tick = 0
 
-    def publish(self, tick: ControlTick, segment: WaistSegment, world: World) -> None:
+    def publish(self, tick: ControlTick, segment: WaistSegment, world: Physics) -> None:
         """Publish what there is to see at a control tick, if it is its turn.
 
         Args:
@@ -120,7 +110,7 @@ class MarkerPublisher:
         at = tick.clock_ticks
         if self.every_ticks == 0 or at % self.every_ticks:
             return
-        position, orientation = torso_pose(world)
+        position, orientation = world.waist().position, world.torso_orientation()
         if not self._walked or tick.control_tick < self._last_tick:
             # Another walk: nothing of the last one stays in view.
             self._markers.publish(self._clear.fill((0.0,) * 3, at))

@@ -25,6 +25,7 @@ from msgs_json.segment import WaistSegment
 from msgs_json.wire import RefusedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
+from sim_node.engines import plant_of
 from sim_node.markers import MarkerPublisher
 from sim_node.pilot import Pilot, check_stance
 from sim_node.realtime import Punctuality, RealtimeLoop
@@ -43,11 +44,15 @@ class SimNode(GuardedNode):
 
         Args:
             options: of `rclpy.node.Node`, such as `parameter_overrides`.
+
+        Raises:
+            EngineMissingError: the physics engine is not installed.
         """
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(SimNodeSettings, self._on_settings)
         self._settings = settings
         self._robot = Robot(settings.robot)
+        plant_of(settings.sim.engine)  # one that is missing is refused here
         self._rng = np.random.default_rng(robot_stream(settings.seed))
         self._stance: WaistSegment | None = None
         self._pilot: Pilot | None = None

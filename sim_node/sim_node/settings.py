@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import check_ranges, section, setting
+from biped_common.settings import SettingsError, check_ranges, section, setting
 from biped_description.settings import RobotSettings
+from sim_node.engines import ENGINES
 
 
 @dataclass(frozen=True)
@@ -86,8 +87,27 @@ class DisturbanceSettings:
 class SimSettings:
     """The simulated robot."""
 
+    engine: str = setting(
+        "pybullet",
+        "",
+        "pybullet: full physics; kinematic: joints on their references, no contact",
+        choices=tuple(ENGINES),
+    )
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
+
+    def __post_init__(self) -> None:
+        """Refuse values out of range, and disturbances that would have no effect."""
+        check_ranges(self)
+        for name in ENGINES[self.engine].unfelt:
+            value = getattr(self.disturbances, name)
+            nominal = getattr(DisturbanceSettings(), name)
+            if value != nominal:
+                raise SettingsError(
+                    f"disturbances.{name}",
+                    value,
+                    f"must be {nominal}: it has no effect with engine = {self.engine}",
+                )
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
+from sim_node.engines import ENGINES
 from sim_node.settings import DisturbanceSettings, LimitSettings, SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
@@ -90,7 +91,7 @@ def shaky_walk() -> list[WaistSegment]:
 
 @pytest.fixture(scope="session")
 def build_walker(static_walk) -> Callable[..., Walker]:
-    """Build walkers from limits, disturbances, a seed and a robot."""
+    """Build walkers from limits, disturbances, a seed, a robot and an engine."""
 
     def build(
         limits: dict | None = None,
@@ -98,9 +99,15 @@ def build_walker(static_walk) -> Callable[..., Walker]:
         seed: int = 0,
         robot: Robot = SHIPPED,
         start: WaistSegment = static_walk[0],
+        engine: str = "pybullet",
     ) -> Walker:
+        felt = {
+            name: value
+            for name, value in (disturbances or {}).items()
+            if name not in ENGINES[engine].unfelt
+        }
         settings = SimSettings(
-            LimitSettings(**(limits or {})), DisturbanceSettings(**(disturbances or {}))
+            engine, LimitSettings(**(limits or {})), DisturbanceSettings(**felt)
         )
         rng = np.random.default_rng(seed)
         ticks = []
@@ -110,13 +117,19 @@ def build_walker(static_walk) -> Callable[..., Walker]:
     return build
 
 
+@pytest.fixture(scope="session")
+def engine() -> str:
+    """Name the engine that walkers walk on; modules override it to try them all."""
+    return "pybullet"
+
+
 @pytest.fixture
-def new_walker(build_walker) -> Iterator[Callable[..., Walker]]:
+def new_walker(build_walker, engine) -> Iterator[Callable[..., Walker]]:
     """Build walkers that are closed when the test is over."""
     with ExitStack() as stack:
 
         def build(*args, **kwargs) -> Walker:
-            walker = build_walker(*args, **kwargs)
+            walker = build_walker(*args, engine=engine, **kwargs)
             stack.callback(walker.robot.close)
             return walker
 

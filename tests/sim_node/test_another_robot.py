@@ -5,7 +5,6 @@ import pytest
 from tests.robots import SHIPPED, TALL, TALL_RUN
 
 from trajectory_node.errors import InfeasibleGaitError
-from trajectory_node.multilink_zmp import multilink_zmp
 from trajectory_node.waist_reference import WaistReference
 
 
@@ -38,15 +37,6 @@ def test_it_goes_as_far_as_its_steps_lead(walked, reference):
 
 def test_the_floor_carries_its_weight(walked):
     assert walked.load_n[-1] == pytest.approx(9.81 * TALL.mass_kg, rel=1e-3)
-
-
-@pytest.mark.parametrize("axis", [0, 1], ids=["x", "y"])
-def test_its_zmp_by_contact_is_its_zmp_by_kinematics(walked, reference, axis):
-    plan, waist = reference.plan, reference.static_waist
-    q = TALL.leg_joint_positions(waist, plan.left_foot, plan.right_foot)
-    expected = multilink_zmp(TALL, waist, q, 0.002)[1 : len(walked.ticks) + 1]
-    difference = walked.zmp_m[:, axis] - expected[:, axis]
-    assert np.sqrt(np.mean(difference**2)) < 0.0025
 
 
 def test_the_shipped_robot_cannot_walk_its_gait():

@@ -148,7 +148,11 @@ def test_physics_that_is_no_number_ends_the_walk_at_once(walker, static_walk, wh
         )
     else:
         pybullet.resetJointState(
-            world.robot, world.joints[3], 0.9, np.nan, physicsClientId=world.client
+            world.robot,
+            world.joint_numbers[3],
+            0.9,
+            np.nan,
+            physicsClientId=world.client,
         )
     end = walker.go_on(static_walk[1:])[-1]
     assert (end.end_cause, end.control_tick) == (EndCause.PHYSICS_NAN, 11)
@@ -248,7 +252,7 @@ def spoil(walker, what):
     elif what == "base_velocity":
         pybullet.resetBaseVelocity(world.robot, (np.nan, 0.0, 0.0), **client)
     else:
-        joint = world.joints[3]
+        joint = world.joint_numbers[3]
         pybullet.resetJointState(world.robot, joint, 0.9, np.nan, **client)
 
 
@@ -280,6 +284,30 @@ def test_an_observation_without_numbers_goes_over_the_wire(walker, static_walk, 
     spoil(walker, what)
     end = walker.go_on(static_walk[1:3])[-1]
     assert decode(Observation, encode(end)) == end
+
+
+@pytest.mark.parametrize(
+    ("mishap", "cause"),
+    [
+        (lambda walker: raise_robot(walker, 0.8), EndCause.FEET_UNLOADED),
+        (lambda walker: raise_robot(walker, -0.2), EndCause.FOOT_THROUGH_FLOOR),
+        (lambda walker: spoil(walker, "base_velocity"), EndCause.PHYSICS_NAN),
+    ],
+)
+def test_nothing_of_a_mishap_is_left_in_the_next_walk(
+    new_walker, shaky_walk, mishap, cause
+):
+    unharmed, harmed = (
+        new_walker({"zmp_error_m": 1.0}),
+        new_walker({"zmp_error_m": 1.0}),
+    )
+    unharmed.walk(shaky_walk[:100])
+    harmed.walk(shaky_walk[:5])
+    mishap(harmed)
+    assert harmed.go_on(shaky_walk[5:20])[-1].end_cause is cause
+    harmed.forget()
+    harmed.walk(shaky_walk[:100])
+    np.testing.assert_array_equal(harmed.everything, unharmed.everything)
 
 
 # -- references taken over while walking on --------------------------------------------

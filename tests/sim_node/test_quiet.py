@@ -9,9 +9,10 @@ import pytest
 BUILD_A_WORLD = """
 from biped_description.robot import Robot
 from biped_description.settings import RobotSettings
-from sim_node.world import World
+from sim_node.pybullet_world import PyBulletWorld
 
-World(Robot(RobotSettings())).close()
+robot = Robot(RobotSettings())
+PyBulletWorld(robot, 0.9, robot.torque_limit_nm).close()
 """
 CHATTER = """
 import ctypes, sys

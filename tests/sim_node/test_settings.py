@@ -31,7 +31,8 @@ def test_the_limits_of_the_paper_are_the_defaults():
 
 def test_settings_come_back_from_their_mapping():
     settings = SimSettings(
-        LimitSettings(zmp_error_m=0.05), DisturbanceSettings(friction=0.3)
+        limits=LimitSettings(zmp_error_m=0.05),
+        disturbances=DisturbanceSettings(friction=0.3),
     )
     assert from_mapping(SimSettings, to_mapping(settings)) == settings
 

@@ -1,4 +1,4 @@
-"""The physics: one PyBullet world with a floor and the biped.
+"""Full physics: a PyBullet world with a floor and the biped.
 
 Every call carries the client's id, so that several worlds can live in one process.
 Dantzig's solver gives a ZMP clean to about 1 mm; the default sequential-impulse solver
@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.joints import JOINT_NAMES
 from biped_description.links import CONTACT_LINKS
+from biped_description.multilink_zmp import GRAVITY_M_S2
 from biped_description.robot import Robot
-from sim_node.errors import SnapshotError, WorldClosedError
+from sim_node.contact import FloorContact
+from sim_node.errors import SnapshotError
+from sim_node.physics import JointStates, Physics, Point, Vector, WaistState
 from sim_node.quiet import engine_chatter_dropped
 
 with engine_chatter_dropped():
     import pybullet
 
-Vector = tuple[float, float, float]
-
-GRAVITY_M_S2 = 9.81
 # Share of its position and speed errors that the servo takes back per tick.
 POSITION_GAIN = 0.5
 VELOCITY_GAIN = 1.0
@@ -33,13 +33,17 @@ _BASE_LINK = -1
 _ANY_LINK = -2
 # Places in what `getJointInfo` returns.
 _JOINT_NAME, _LINK_NAME = 1, 12
+# Places in a contact point, with the robot as body A.
+_LINK_A, _POSITION_ON_B, _DISTANCE, _NORMAL_FORCE = 3, 6, 8, 9
 
 
-class World:
-    """Floor and robot, stepped one control tick at a time."""
+class PyBulletWorld(Physics):
+    """Floor and robot in a world of their own; see `Physics`."""
 
-    def __init__(self, robot: Robot) -> None:
-        """Open a world of its own, with the robot standing at the origin."""
+    def __init__(
+        self, robot: Robot, friction: float, torque_limits_nm: NDArray[np.float64]
+    ) -> None:
+        """Open a world, with the robot standing at the origin."""
         self.client: int = pybullet.connect(pybullet.DIRECT)
         with engine_chatter_dropped():
             pybullet.setPhysicsEngineParameter(
@@ -55,17 +59,17 @@ class World:
             )
         pybullet.setGravity(0.0, 0.0, -GRAVITY_M_S2, physicsClientId=self.client)
         self.floor: int = self._make_floor()
-        self.robot: int = self._load(robot)
+        self.robot: int = self._load_robot(robot)
         self._torso_com_height_m = robot.settings.torso_com_height_m
         # The engine gives a joint and the link that it moves the same number.
         numbers = self._numbers()
-        self.joints: list[int] = [numbers[name] for name in JOINT_NAMES]
+        self.joint_numbers: list[int] = [numbers[name] for name in JOINT_NAMES]
         self.left_sole, self.right_sole = (numbers[name] for name in CONTACT_LINKS)
-        self._links = [_BASE_LINK, *self.joints]
+        self._links = [_BASE_LINK, *self.joint_numbers]
         self._masses = [self._dynamics(link)[0] for link in self._links]
         self._inertias = [self._dynamics(link)[2] for link in self._links]
         for link in self._links:
-            pybullet.changeDynamics(
+            self._change_dynamics(
                 self.robot,
                 link,
                 linearDamping=0.0,
@@ -74,57 +78,37 @@ class World:
                 rollingFriction=0.0,
                 spinningFriction=0.0,
                 restitution=0.0,
-                physicsClientId=self.client,
             )
+        # The engine multiplies the coefficients of the two bodies; the floor's is 1.
+        for sole in (self.left_sole, self.right_sole):
+            self._change_dynamics(self.robot, sole, lateralFriction=friction)
         # The engine's default velocity motors would brake every joint.
+        n_joints = len(self.joint_numbers)
         pybullet.setJointMotorControlArray(
             self.robot,
-            self.joints,
+            self.joint_numbers,
             pybullet.VELOCITY_CONTROL,
-            forces=[0.0] * len(self.joints),
+            forces=[0.0] * n_joints,
             physicsClientId=self.client,
         )
-        self.set_friction(0.9)
-        self.set_torque_limits(robot.torque_limit_nm)
-        self._gains = (
-            [POSITION_GAIN] * len(self.joints),
-            [VELOCITY_GAIN] * len(self.joints),
+        self._servo = (
+            torque_limits_nm.tolist(),
+            [POSITION_GAIN] * n_joints,
+            [VELOCITY_GAIN] * n_joints,
+            self.client,
         )
 
-    # -- parameters of the plant ---------------------------------------------------
-
-    def set_friction(self, lateral_friction: float) -> None:
-        """Set the lateral friction of both soles against the floor."""
-        # The engine multiplies the coefficients of the two bodies.
-        for link in (self.left_sole, self.right_sole):
-            pybullet.changeDynamics(
-                self.robot,
-                link,
-                lateralFriction=lateral_friction,
-                physicsClientId=self.client,
-            )
-
-    def set_torque_limits(self, limits_nm: NDArray[np.float64]) -> None:
-        """Set the (12,) torques that the servos can reach [N m]."""
-        self.torque_limits: list[float] = limits_nm.tolist()
-
     def set_mass_factors(self, factors: NDArray[np.float64]) -> None:
-        """Scale mass and inertia of the (13,) links, base first."""
+        """Scale the nominal mass and inertia of the (13,) links."""
         for link, mass, inertia, factor in zip(
             self._links, self._masses, self._inertias, factors, strict=True
         ):
-            pybullet.changeDynamics(
+            self._change_dynamics(
                 self.robot,
                 link,
                 mass=mass * factor,
                 localInertiaDiagonal=[moment * factor for moment in inertia],
-                physicsClientId=self.client,
             )
-
-    @property
-    def n_links(self) -> int:
-        """Number of links, the base included."""
-        return len(self._links)
 
     # -- motion --------------------------------------------------------------------
 
@@ -137,35 +121,29 @@ class World:
         pybullet.resetBaseVelocity(
             self.robot, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), physicsClientId=self.client
         )
-        for joint, position in zip(self.joints, q.tolist(), strict=True):
+        for joint, position in zip(self.joint_numbers, q.tolist(), strict=True):
             pybullet.resetJointState(
                 self.robot, joint, position, 0.0, physicsClientId=self.client
             )
 
-    def step(self, q: list[float], dq: list[float]) -> None:
-        """Drive the joints for one control tick.
-
-        Args:
-            q: reference positions now [rad].
-            dq: reference velocities until the next tick [rad/s].
-        """
-        self.command(q, dq)
-        pybullet.stepSimulation(physicsClientId=self.client)
+    # Once a tick: arguments by position, since keywords take a tenth of the time.
 
     def command(self, q: list[float], dq: list[float]) -> None:
-        """Give the servos their references for the next tick, without stepping."""
+        """Give the servos their references for the next tick."""
         pybullet.setJointMotorControlArray(
             self.robot,
-            self.joints,
+            self.joint_numbers,
             pybullet.POSITION_CONTROL,
             q,
             dq,
-            self.torque_limits,
-            *self._gains,
-            self.client,
+            *self._servo,
         )
 
-    def push(self, force_n: tuple[float, float, float]) -> None:
+    def step(self) -> None:
+        """Go on by one control tick."""
+        pybullet.stepSimulation(self.client)
+
+    def push(self, force_n: Vector) -> None:
         """Push the torso at its CoM during the next control tick."""
         position, _ = pybullet.getBasePositionAndOrientation(
             self.robot, physicsClientId=self.client
@@ -181,21 +159,21 @@ class World:
 
     # -- readings ------------------------------------------------------------------
 
-    def joint_states(self) -> tuple[tuple[float, ...], ...]:
-        """Return the (12,) positions [rad], velocities [rad/s] and torques [N m]."""
-        states = pybullet.getJointStates(self.robot, self.joints, self.client)
+    def joints(self) -> JointStates:
+        """Return what the joints measure."""
+        states = pybullet.getJointStates(self.robot, self.joint_numbers, self.client)
         position, velocity, _, torque = zip(*states)  # noqa: B905
-        return position, velocity, torque
+        return JointStates(position, velocity, torque)
 
-    def contacts(self) -> Any:
-        """Return PyBullet's contact points, the robot as body A."""
-        # By position: keywords alone take a tenth of the time.
-        return pybullet.getContactPoints(
+    def contact(self, held: Point) -> FloorContact:
+        """Return what the floor felt in the last step."""
+        points = pybullet.getContactPoints(
             self.robot, self.floor, _ANY_LINK, _ANY_LINK, self.client
         )
+        return floor_contact(points, self.left_sole, held)
 
-    def waist(self) -> tuple[Vector, Vector]:
-        """Return position [m] and velocity [m/s] of the waist."""
+    def waist(self) -> WaistState:
+        """Return where the waist is and how it moves."""
         position, orientation = pybullet.getBasePositionAndOrientation(
             self.robot, physicsClientId=self.client
         )
@@ -210,7 +188,7 @@ class World:
         x, y, z = position
         vx, vy, vz = velocity
         # Plain numbers: numpy's cross product alone would take longer than all of this.
-        return (
+        return WaistState(
             (x + dx, y + dy, z + dz),
             (
                 vx + (wy * dz - wz * dy),
@@ -218,6 +196,13 @@ class World:
                 vz + (wx * dy - wy * dx),
             ),
         )
+
+    def torso_orientation(self) -> tuple[float, float, float, float]:
+        """Return the torso's orientation, a quaternion (x, y, z, w)."""
+        _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(
+            self.robot, physicsClientId=self.client
+        )
+        return x, y, z, w
 
     # -- states --------------------------------------------------------------------
 
@@ -243,11 +228,6 @@ class World:
             pybullet.disconnect(physicsClientId=self.client)
             self.client = -1
 
-    def check_open(self) -> None:
-        """Refuse to work on a closed world."""
-        if self.client < 0:
-            raise WorldClosedError("this world has been closed")
-
     # -- set-up --------------------------------------------------------------------
 
     def _make_floor(self) -> int:
@@ -257,18 +237,17 @@ class World:
         floor: int = pybullet.createMultiBody(
             baseMass=0.0, baseCollisionShapeIndex=shape, physicsClientId=self.client
         )
-        pybullet.changeDynamics(
+        self._change_dynamics(
             floor,
             _BASE_LINK,
             lateralFriction=1.0,
             rollingFriction=0.0,
             spinningFriction=0.0,
             restitution=0.0,
-            physicsClientId=self.client,
         )
         return floor
 
-    def _load(self, robot: Robot) -> int:
+    def _load_robot(self, robot: Robot) -> int:
         # The engine reads files only.
         with NamedTemporaryFile(mode="w", suffix=".urdf", encoding="utf-8") as file:
             file.write(robot.urdf)
@@ -296,3 +275,34 @@ class World:
 
     def _dynamics(self, link: int) -> Any:
         return pybullet.getDynamicsInfo(self.robot, link, physicsClientId=self.client)
+
+    def _change_dynamics(self, body: int, link: int, **values: Any) -> None:
+        pybullet.changeDynamics(body, link, physicsClientId=self.client, **values)
+
+
+def floor_contact(points: Any, left_sole: int, held: Point) -> FloorContact:
+    """Sum up contact points: ZMP = sum(f p) / sum(f) over pressing points.
+
+    Args:
+        points: PyBullet contact points with the robot as body A.
+        left_sole: link index of the left foot; the other contacts are the right's.
+        held: ZMP of the tick before, given again where no foot presses.
+    """
+    left = right = moment_x = moment_y = 0.0
+    nearest = 0.0
+    for point in points:
+        force = point[_NORMAL_FORCE]
+        if point[_DISTANCE] < nearest:
+            nearest = point[_DISTANCE]
+        if force > 0.0:
+            position = point[_POSITION_ON_B]
+            moment_x += force * position[0]
+            moment_y += force * position[1]
+            if point[_LINK_A] == left_sole:
+                left += force
+            else:
+                right += force
+    load = left + right
+    if load > 0.0:
+        return FloorContact(moment_x / load, moment_y / load, left, right, -nearest)
+    return FloorContact(held[0], held[1], 0.0, 0.0, -nearest)
