@@ -17,7 +17,7 @@ from benchmarks.report import Figure
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import Walker
 from biped_common.settings import from_mapping
-from learner_node.walking.frozen import static_walk
+from learner_node.walking.walks import static_walk
 from sim_node.control_tick import ControlTick
 
 _TURNS = 7

@@ -13,7 +13,7 @@ class LearnerStatus(
     kw_only=True,
     forbid_unknown_fields=True,
     tag_field="version",
-    tag=1,
+    tag=2,
 ):
     """State of the schedule and of the memory between two episodes."""
 
@@ -35,12 +35,8 @@ class LearnerStatus(
     """Learning episodes so far."""
     survival: float
     """Walked over target time, mean of the last episodes."""
-    basis_states: Count
-    """States in memory."""
-    fixed_states: Count
-    """Of these, in fixed mode."""
-    penalty_states: Count
-    """Of these, penalty states."""
+    figures: dict[str, float]
+    """What there is to know about the memory, under names of the learner's own."""
     t_err_estimate: float | None
     """T_err-hat of the present subtask; None before its first completed walk."""
     schedule_complete: bool

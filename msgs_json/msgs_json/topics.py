@@ -8,6 +8,7 @@ from dataclasses import dataclass
 SIM_NODE = "sim_node"
 TRAJECTORY_NODE = "trajectory_node"
 LEARNER_NODE = "learner_node"
+RECORDER_NODE = "recorder_node"
 
 
 @dataclass(frozen=True)

@@ -71,6 +71,9 @@ def _not_finite(value: object, place: str) -> Iterator[str]:
     elif isinstance(value, tuple):
         for i, element in enumerate(value):
             yield from _not_finite(element, f"{place}[{i}]")
+    elif isinstance(value, dict):
+        for name, element in value.items():
+            yield from _not_finite(element, f"{place}.{name}")
 
 
 @cache

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from biped_common.timing import seconds
-from biped_description import kinematics
-from biped_description.joints import TORQUE_LIMIT
+from biped_description import kernels
+from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
@@ -33,9 +33,10 @@ from sim_node.world import World
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
+_NO_NOISE = [[0.0, 0.0]] * 3
 _IK_END_CAUSE = {
-    kinematics.UNREACHABLE: EndCause.IK_UNREACHABLE,
-    kinematics.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
+    kernels.UNREACHABLE: EndCause.IK_UNREACHABLE,
+    kernels.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
 }
 
 
@@ -76,6 +77,7 @@ class SimulatedBiped:
 
     def __init__(
         self,
+        robot: Robot,
         settings: SimSettings,
         start: WaistSegment,
         rng: np.random.Generator,
@@ -85,21 +87,23 @@ class SimulatedBiped:
         """Build the world and let the robot settle in its starting pose.
 
         Args:
+            robot: that is simulated.
             settings: limits and disturbances.
             start: a segment whose row 0 is the pose in which walks start.
-            rng: source of all disturbances.
+            rng: source of all disturbances; nothing is drawn where none is random.
             on_tick: called after every control tick.
             name: of this simulation's run, for observations.
         """
         self._name = name
+        self.robot = robot
         self.settings = settings
         self.on_tick = on_tick
         self._rng = rng
         self._start = start
-        self.world = World()
+        self.world = World(robot)
         self.world.set_friction(settings.disturbances.friction)
         self.world.set_torque_limits(
-            TORQUE_LIMIT * settings.disturbances.torque_limit_factor
+            robot.torque_limit_nm * settings.disturbances.torque_limit_factor
         )
         sizes = settings.disturbances
         self._noise_sizes = np.array(
@@ -109,7 +113,11 @@ class SimulatedBiped:
                 [sizes.acceleration_noise_m_s2],
             ]
         )
-        self._limit_watch = LimitWatch(settings.limits, self.world.torque_limits)
+        self._limit_watch = LimitWatch(
+            settings.limits,
+            robot.settings.velocity_limit_rad_s,
+            self.world.torque_limits,
+        )
         self._references = standing(start)
         self._snapshots: set[BipedSnapshot] = set()
         # Measured since the last observation.
@@ -133,9 +141,10 @@ class SimulatedBiped:
         self.world.check_open()
         self.world.load(self._standing)
         disturbances = self.settings.disturbances
-        self._disturbance = draw_disturbance(
-            disturbances, self.world.n_links, self._rng
-        )
+        if disturbances.random:
+            self._disturbance = draw_disturbance(
+                disturbances, self.world.n_links, self._rng
+            )
         if disturbances.mass_error > 0.0:
             self.world.set_mass_factors(self._disturbance.mass_factors)
         contact = floor_contact(self.world.contacts(), self.world.left_sole, (0.0, 0.0))
@@ -194,7 +203,7 @@ class SimulatedBiped:
             )
         if segment.n_ticks < 1:
             raise ValueError("segment without a tick")
-        references, status = solve(segment, rows)
+        references, status = solve(self.robot, segment, rows)
         if references.rows <= segment.n_ticks:
             watch.end_cause = _IK_END_CAUSE[status]
             return
@@ -244,8 +253,10 @@ class SimulatedBiped:
         foot = segment.right_foot if planned[0] else segment.left_foot
         # Over the time since the last observation; the walk's last one is shorter.
         period_s = seconds(max(1, len(self._ticks)))
-        # Drawn also where its size is zero, so that a size changes no other draw.
-        noise = (self._noise_sizes * self._rng.standard_normal((3, 2))).tolist()
+        noise = _NO_NOISE
+        if self.settings.disturbances.random:
+            # Drawn also where its size is zero, so that a size changes no other draw.
+            noise = (self._noise_sizes * self._rng.standard_normal((3, 2))).tolist()
         waist_in_support_foot = _measured(waist, foot[row].tolist(), noise[0])
         zmp_error = _measured(watch.contact, references.zmp[row], noise[1])
         acceleration = _measured(velocity, watch.waist_velocity, noise[2], period_s)
@@ -365,7 +376,7 @@ class SimulatedBiped:
 
     def _settle(self) -> None:
         pose = (self._start.waist[:1], self._start.left_foot[:1], self._start.right_foot[:1])  # fmt: skip  # noqa: E501
-        q = kinematics.leg_joint_positions(*pose)[0]
+        q = self.robot.leg_joint_positions(*pose)[0]
         self.world.place(pose[0][0], q)
         still = [0.0] * len(q)
         for _ in range(_SETTLING_TICKS):

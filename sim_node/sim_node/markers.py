@@ -13,7 +13,7 @@ import numpy as np
 import pybullet
 from visualization_msgs.msg import Marker
 
-from biped_description.dimensions import BIPED
+from biped_description.settings import RobotSettings
 from biped_ros.guarded import GuardedNode
 from biped_ros.markers import (
     CLEAR,
@@ -31,7 +31,8 @@ Point = tuple[float, float]
 TORSO_FRAME = "torso"
 _WALKED_POINTS = 50
 """Of the waist's way so far, 2 s at 25 Hz."""
-_PLANNED_EVERY_ROWS = 5
+_PLANNED_POINTS = 13
+"""Of the waist's way ahead, evenly spaced over the segment."""
 _LINE_M = (0.004, 0.0, 0.0)
 _DOT_M = (0.016, 0.016, 0.016)
 _GREEN, _RED, _BLUE = (0.1, 0.7, 0.2, 1.0), (0.9, 0.1, 0.1, 1.0), (0.1, 0.3, 0.9, 1.0)
@@ -42,10 +43,11 @@ _PALE_BLUE, _ORANGE, _GREY = (
 )
 
 
-def support_polygon(feet: Sequence[Point]) -> list[Point]:
+def support_polygon(robot: RobotSettings, feet: Sequence[Point]) -> list[Point]:
     """Return the corners of the convex hull of soles, anticlockwise.
 
     Args:
+        robot: dimensions of its soles.
         feet: (x, y) of none, one or both feet, which point ahead, world frame [m].
 
     Returns:
@@ -53,11 +55,11 @@ def support_polygon(feet: Sequence[Point]) -> list[Point]:
     """
     if not feet:
         return []
-    half_x, half_y = BIPED.sole.length_x / 2, BIPED.sole.length_y / 2
+    half_x, half_y = robot.sole_length_m / 2, robot.sole_width_m / 2
     soles = [
         ((x - half_x, y - half_y), (x + half_x, y - half_y),
          (x + half_x, y + half_y), (x - half_x, y + half_y))
-        for x, y in sorted((x + BIPED.sole_ahead_of_ankle, y) for x, y in feet)
+        for x, y in sorted((x + robot.sole_ahead_of_ankle_m, y) for x, y in feet)
     ]  # fmt: skip
     if len(soles) == 1:
         return list(soles[0])
@@ -80,26 +82,26 @@ class MarkerPublisher:
     """Publishes markers and torso pose at every n-th control tick of a walk."""
 
     def __init__(
-        self, node: GuardedNode, zmp_limit_m: float, segment_rows: int, every_ticks: int
+        self,
+        node: GuardedNode,
+        robot: RobotSettings,
+        zmp_limit_m: float,
+        every_ticks: int,
     ) -> None:
         """Make the publishers on a node.
 
         Args:
             node: that publishes.
+            robot: whose soles are drawn.
             zmp_limit_m: norm of the ZMP error that is a failure.
-            segment_rows: rows of every waist segment.
             every_ticks: control ticks between two messages; 0: never.
         """
         self.every_ticks = every_ticks
+        self._robot = robot
         self._markers = node.publisher(topics.MARKERS)
         self._torso = node.publisher(topics.TORSO_POSE)
-        self._planned_rows = np.r_[
-            0 : segment_rows - 1 : _PLANNED_EVERY_ROWS, segment_rows - 1
-        ]
         self._templates = {
-            corners: marker_array_template(
-                _forms(corners, zmp_limit_m, len(self._planned_rows))
-            )
+            corners: marker_array_template(_forms(corners, zmp_limit_m))
             for corners in (0, 4, 6)
         }
         self._clear = marker_array_template([CLEAR])
@@ -136,7 +138,8 @@ class MarkerPublisher:
             )
             if load > 0.0
         ]
-        corners = support_polygon(loaded)
+        corners = support_polygon(self._robot, loaded)
+        ahead = np.linspace(0, len(segment.waist) - 1, _PLANNED_POINTS, dtype=np.int64)
         origin = (0.0, 0.0, 0.0)
         reference = (*tick.zmp_reference, 0.0)
         values = np.concatenate(
@@ -146,14 +149,14 @@ class MarkerPublisher:
                 reference,
                 reference,
                 origin,
-                segment.waist[self._planned_rows].ravel(),
+                segment.waist[ahead].ravel(),
                 np.ravel([origin, *self._walked]),
             ]
         )
         self._markers.publish(self._templates[len(corners)].fill(values, at))
 
 
-def _forms(corners: int, zmp_limit_m: float, planned_points: int) -> list[MarkerForm]:
+def _forms(corners: int, zmp_limit_m: float) -> list[MarkerForm]:
     """Return the markers, in the order of their values."""
     return [
         MarkerForm(
@@ -173,7 +176,7 @@ def _forms(corners: int, zmp_limit_m: float, planned_points: int) -> list[Marker
             _PALE_BLUE,
         ),
         MarkerForm(
-            "waist_planned", Marker.LINE_STRIP, _LINE_M, _ORANGE, points=planned_points
+            "waist_planned", Marker.LINE_STRIP, _LINE_M, _ORANGE, points=_PLANNED_POINTS
         ),
         MarkerForm("waist_walked", Marker.POINTS, _DOT_M, _GREY, points=_WALKED_POINTS),
     ]

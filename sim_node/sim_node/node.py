@@ -12,17 +12,17 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from std_srvs.srv import SetBool, Trigger
 
 from biped_common.seeds import robot_stream
-from biped_description.urdf import urdf_path
+from biped_description.robot import Robot
 from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
-from biped_ros.messages import segment_of, segment_template, segment_values
+from biped_ros.messages import SegmentReader, segment_of, segment_values
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
-from msgs_json.wire import MalformedMessageError, RefusedMessageError, decode, encode
+from msgs_json.wire import RefusedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
 from sim_node.markers import MarkerPublisher
@@ -47,6 +47,7 @@ class SimNode(GuardedNode):
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(SimNodeSettings, self._on_settings)
         self._settings = settings
+        self._robot = Robot(settings.robot)
         self._rng = np.random.default_rng(robot_stream(settings.seed))
         self._stance: WaistSegment | None = None
         self._pilot: Pilot | None = None
@@ -59,15 +60,14 @@ class SimNode(GuardedNode):
         self._ticks = TickPublisher(self, settings.publish_every_ticks)
         self._markers = MarkerPublisher(
             self,
+            settings.robot,
             settings.sim.limits.zmp_error_m,
-            settings.segment_rows,
             settings.markers_every_ticks,
         )
         self._observations = self.publisher(topics.OBSERVATION)
         description = self.publisher(topics.ROBOT_DESCRIPTION)
-        description.publish(string_message(urdf_path().read_text()))
-        self._stance_template = segment_template(rows=1)
-        self._template = segment_template(settings.segment_rows)
+        description.publish(string_message(self._robot.urdf))
+        self._stances, self._segments = SegmentReader(), SegmentReader()
         self.listen(topics.STANCE, self._on_stance)
         self.listen(topics.WAIST_REFERENCE, self._on_segment)
         self.listen(topics.EPISODE, self._on_episode)
@@ -97,11 +97,8 @@ class SimNode(GuardedNode):
     # -- messages ------------------------------------------------------------------
 
     def _on_stance(self, message: bytes) -> None:
-        read = self._stance_template.read(message)
-        if read is None:
-            raise MalformedMessageError("stance: not a waist reference of one row")
-        stance = segment_of(read[0])
-        check_stance(stance)
+        stance = segment_of(self._stances.read(message)[0])
+        check_stance(self._robot, stance)
         if self._stance is None:
             self._stance = stance
             self._stand(stance)
@@ -113,6 +110,7 @@ class SimNode(GuardedNode):
     def _stand(self, stance: WaistSegment) -> None:
         """Build the world around the robot in its stance."""
         biped = SimulatedBiped(
+            self._robot,
             self._settings.sim,
             stance,
             self._rng,
@@ -140,14 +138,9 @@ class SimNode(GuardedNode):
         if self._paused and self._loop is None:
             self._held = message
             return
-        read = self._template.read(message)
-        if read is None:
-            raise MalformedMessageError(
-                f"waist reference: not {self._settings.segment_rows} rows of this form"
-            )
+        values, clock_ticks = self._segments.read(message)
         if self._pilot is None:
             raise RefusedMessageError("no stance is known yet")
-        values, clock_ticks = read
         segment = segment_of(values)
         if self._loop is None:
             latency_ns = time.monotonic_ns() - self._observed_ns

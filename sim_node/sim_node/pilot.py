@@ -6,7 +6,7 @@ Pure bookkeeping around the robot; the node brings the messages and the time.
 from __future__ import annotations
 
 from biped_description.errors import DescriptionError
-from biped_description.kinematics import leg_joint_positions
+from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
@@ -15,14 +15,14 @@ from msgs_json.wire import RefusedMessageError
 from sim_node.biped import SimulatedBiped
 
 
-def check_stance(stance: WaistSegment) -> None:
-    """Refuse a pose in which the robot cannot stand.
+def check_stance(robot: Robot, stance: WaistSegment) -> None:
+    """Refuse a pose in which a robot cannot stand.
 
     Raises:
         RefusedMessageError: the legs do not reach it.
     """
     try:
-        leg_joint_positions(stance.waist, stance.left_foot, stance.right_foot)
+        robot.leg_joint_positions(stance.waist, stance.left_foot, stance.right_foot)
     except DescriptionError as error:
         raise RefusedMessageError(f"stance: {error}") from None
 

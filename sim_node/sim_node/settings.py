@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from biped_common.settings import check_ranges, section, setting
+from biped_description.settings import RobotSettings
 
 
 @dataclass(frozen=True)
 class LimitSettings:
-    """What ends a walk."""
+    """What ends a walk, besides the robot's own velocity limit."""
 
     zmp_error_m: float = setting(
         0.065, "m", "norm of the ZMP error that is a failure (Table 1)", above=0.0
-    )
-    joint_velocity_rad_s: float = setting(
-        20.0 * math.pi, "rad/s", "joint speed that is a failure (Table 1)", above=0.0
     )
     torque_saturation_s: float = setting(
         0.1, "s", "a joint held at its torque limit this long is a failure", above=0.0
@@ -72,6 +69,18 @@ class DisturbanceSettings:
         """Refuse values out of range."""
         check_ranges(self)
 
+    @property
+    def random(self) -> bool:
+        """Whether chance has a part in the walks, so that no two are the same."""
+        sizes = (
+            self.push_force_n,
+            self.mass_error,
+            self.position_noise_m,
+            self.zmp_noise_m,
+            self.acceleration_noise_m_s2,
+        )
+        return any(size > 0.0 for size in sizes)
+
 
 @dataclass(frozen=True)
 class SimSettings:
@@ -85,6 +94,7 @@ class SimSettings:
 class SimNodeSettings:
     """All of the simulation node."""
 
+    robot: RobotSettings = section(RobotSettings)
     sim: SimSettings = section(SimSettings)
     seed: int = setting(0, "", "of the disturbances", lower=0)
     pace: str = setting(
@@ -100,9 +110,6 @@ class SimNodeSettings:
         above=0.0,
         upper=20.0,
         live=True,
-    )
-    segment_rows: int = setting(
-        60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
     )
     publish_every_ticks: int = setting(
         1,

@@ -7,15 +7,16 @@ is slower here and its contact forces ring.
 
 from __future__ import annotations
 
+from tempfile import NamedTemporaryFile
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_S
-from biped_description.dimensions import BIPED
-from biped_description.joints import JOINT_NAMES, TORQUE_LIMIT
-from biped_description.urdf import urdf_path
+from biped_description.joints import JOINT_NAMES
+from biped_description.links import CONTACT_LINKS
+from biped_description.robot import Robot
 from sim_node.errors import SnapshotError, WorldClosedError
 from sim_node.quiet import engine_chatter_dropped
 
@@ -30,13 +31,15 @@ POSITION_GAIN = 0.5
 VELOCITY_GAIN = 1.0
 _BASE_LINK = -1
 _ANY_LINK = -2
+# Places in what `getJointInfo` returns.
+_JOINT_NAME, _LINK_NAME = 1, 12
 
 
 class World:
     """Floor and robot, stepped one control tick at a time."""
 
-    def __init__(self) -> None:
-        """Open a world of its own, with the robot at the origin."""
+    def __init__(self, robot: Robot) -> None:
+        """Open a world of its own, with the robot standing at the origin."""
         self.client: int = pybullet.connect(pybullet.DIRECT)
         with engine_chatter_dropped():
             pybullet.setPhysicsEngineParameter(
@@ -52,17 +55,13 @@ class World:
             )
         pybullet.setGravity(0.0, 0.0, -GRAVITY_M_S2, physicsClientId=self.client)
         self.floor: int = self._make_floor()
-        self.robot: int = pybullet.loadURDF(
-            str(urdf_path()),
-            basePosition=(0.0, 0.0, BIPED.waist_height),
-            flags=pybullet.URDF_USE_INERTIA_FROM_FILE,
-            physicsClientId=self.client,
-        )
-        indices = self._joint_indices()
-        self.joints: list[int] = [indices[name] for name in JOINT_NAMES]
-        self.left_sole = self.joints[JOINT_NAMES.index("left_ankle_roll")]
-        self.right_sole = self.joints[JOINT_NAMES.index("right_ankle_roll")]
-        self._links = [_BASE_LINK, *range(len(indices))]
+        self.robot: int = self._load(robot)
+        self._torso_com_height_m = robot.settings.torso_com_height_m
+        # The engine gives a joint and the link that it moves the same number.
+        numbers = self._numbers()
+        self.joints: list[int] = [numbers[name] for name in JOINT_NAMES]
+        self.left_sole, self.right_sole = (numbers[name] for name in CONTACT_LINKS)
+        self._links = [_BASE_LINK, *self.joints]
         self._masses = [self._dynamics(link)[0] for link in self._links]
         self._inertias = [self._dynamics(link)[2] for link in self._links]
         for link in self._links:
@@ -86,7 +85,7 @@ class World:
             physicsClientId=self.client,
         )
         self.set_friction(0.9)
-        self.set_torque_limits(TORQUE_LIMIT)
+        self.set_torque_limits(robot.torque_limit_nm)
         self._gains = (
             [POSITION_GAIN] * len(self.joints),
             [VELOCITY_GAIN] * len(self.joints),
@@ -131,7 +130,7 @@ class World:
 
     def place(self, waist: NDArray[np.float64], q: NDArray[np.float64]) -> None:
         """Put the robot at rest, upright, with its waist and joints as given."""
-        base = (waist[0], waist[1], waist[2] + BIPED.torso_com_height)
+        base = (waist[0], waist[1], waist[2] + self._torso_com_height_m)
         pybullet.resetBasePositionAndOrientation(
             self.robot, base, (0.0, 0.0, 0.0, 1.0), physicsClientId=self.client
         )
@@ -205,7 +204,7 @@ class World:
         )
         # PyBullet speaks of the torso's CoM; the waist lies below it.
         dx, dy, dz = pybullet.rotateVector(
-            orientation, (0.0, 0.0, -BIPED.torso_com_height)
+            orientation, (0.0, 0.0, -self._torso_com_height_m)
         )
         wx, wy, wz = spin
         x, y, z = position
@@ -269,13 +268,31 @@ class World:
         )
         return floor
 
-    def _joint_indices(self) -> dict[str, int]:
+    def _load(self, robot: Robot) -> int:
+        # The engine reads files only.
+        with NamedTemporaryFile(mode="w", suffix=".urdf", encoding="utf-8") as file:
+            file.write(robot.urdf)
+            file.flush()
+            loaded: int = pybullet.loadURDF(
+                file.name,
+                basePosition=(0.0, 0.0, robot.settings.stretched_leg_length_m),
+                flags=pybullet.URDF_USE_INERTIA_FROM_FILE,
+                physicsClientId=self.client,
+            )
+        return loaded
+
+    def _numbers(self) -> dict[str, int]:
+        """Return the engine's number of each joint and of the link that it moves."""
         count = pybullet.getNumJoints(self.robot, physicsClientId=self.client)
         infos = (
             pybullet.getJointInfo(self.robot, i, physicsClientId=self.client)
             for i in range(count)
         )
-        return {info[1].decode(): info[0] for info in infos}
+        return {
+            info[name].decode(): info[0]
+            for info in infos
+            for name in (_JOINT_NAME, _LINK_NAME)
+        }
 
     def _dynamics(self, link: int) -> Any:
         return pybullet.getDynamicsInfo(self.robot, link, physicsClientId=self.client)

@@ -215,12 +215,12 @@ def test_a_learned_run_does_not_go_on(training):
 def test_the_summary_tells_where_the_run_stands(training):
     run = learn(training(quick(*SHORT), seed=4), 1)
     summary = run.summary(Path("memory.npz"))
-    log, agent = run.log.arrays(), run.learner.agent
+    log = run.log.arrays()
     assert summary["seed"] == 4
     assert summary["episodes"] == 1
     assert summary["simulated_s"] == pytest.approx(0.002 * log["control_ticks"][0])
-    assert summary["basis_states"] == agent.basis_states > 0
-    assert summary["memory_sha256"] == run.learner.memory_sha256()
+    assert summary["figures"] == run.session.learner.figures()
+    assert summary["memory_sha256"] == run.session.memory_sha256()
     assert summary["memory_file"] == "memory.npz"
 
 

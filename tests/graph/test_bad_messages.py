@@ -10,6 +10,7 @@ import rclpy
 from geometry_msgs.msg import Vector3Stamped
 from std_msgs.msg import String
 from tests.graph.domains import MODULE, own_domain
+from tests.robots import SHIPPED
 
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.one_executor import OneExecutor
@@ -41,7 +42,7 @@ def learned(domain, disturb=None):
             assert graph.spin_until(lambda: session.episodes >= 1, TIMEOUT_S)
             disturb(graph)
         assert graph.spin_until(lambda: session.episodes >= EPISODES, TIMEOUT_S)
-        return session.learner.memory_sha256(), session.tally.trajectories_sha256
+        return session.memory_sha256(), session.tally.trajectories_sha256
 
 
 @pytest.fixture(scope="module")
@@ -142,7 +143,9 @@ def test_segments_of_another_form_change_nothing(domain, undisturbed, topic):
 
 def test_a_segment_of_the_past_is_never_walked_again(domain, undisturbed):
     settings = load_settings("quick")
-    reference = WaistReference(settings.gait, settings.correction, look_ahead_ticks=50)
+    reference = WaistReference(
+        SHIPPED, settings.gait, settings.correction, look_ahead_ticks=50
+    )
     values = segment_values(reference.segment(np.zeros(2)))
     message = segment_template(reference.rows).fill(values, clock_ticks=1)
     assert learned(domain, flood(topics.WAIST_REFERENCE, [message])) == undisturbed

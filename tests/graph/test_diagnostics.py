@@ -4,6 +4,7 @@ import msgspec
 import pytest
 from std_msgs.msg import String
 from tests.graph.clients import TIMEOUT_S, Client, quick
+from tests.robots import SHIPPED
 
 from biped_bringup.one_executor import OneExecutor
 from biped_ros.guarded import message_type
@@ -109,7 +110,7 @@ def test_messages_that_are_refused_and_that_never_came_are_told(domain):
 
 
 def test_a_stance_that_no_leg_reaches_is_refused(domain):
-    reference = WaistReference(GaitSettings(), CorrectionSettings())
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
     values = segment_values(reference.stance())
     values[0, 0, 2] = 5.0  # the waist, five metres high
     with OneExecutor(quick(listen_s=60.0), domain) as graph, Client(graph) as client:

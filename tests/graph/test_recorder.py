@@ -242,7 +242,7 @@ def test_the_last_record_names_the_memory_that_was_saved(run):
     learned = TrainingRun.load(run.bag.parent / "memory.npz")
     learned.close()
     last = records(run.bag, "biped.episode")[-1]
-    assert last["memory_sha256"] == learned.learner.memory_sha256()
+    assert last["memory_sha256"] == learned.session.memory_sha256()
     assert last["trajectory_sha256"] == learned.tally.trajectories_sha256
 
 

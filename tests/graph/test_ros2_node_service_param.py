@@ -247,6 +247,11 @@ def test_a_dumped_file_is_loaded_as_far_as_the_node_takes_it(ros2, tmp_path):
             "service call /nobody std_srvs/srv/Empty --timeout 0.1",
             "Service '/nobody' is not available",
         ),
+        (
+            "service call /no-where std_srvs/srv/Empty",
+            "Invalid service name: topic name must not contain characters other than "
+            "alphanumerics, '_', '~', '{', or '}': '/no-where'",
+        ),
     ],
 )
 def test_what_is_not_there_is_one_line(settled, arguments, message):

@@ -172,6 +172,8 @@ def test_what_cannot_be_is_one_line_and_status_1(
         (["echo", "--field", "d", "/chatter"], "Invalid field 'd': 'String' object "),
         (["echo", "--filter", "m.", "/chatter"], "Invalid filter 'm.': "),
         (["delay", "/chatter"], "msg does not have header"),
+        (["pub", "/no where", "std_msgs/msg/String"], "Invalid topic name: "),
+        (["pub", "-n", "no name", "/x", "std_msgs/msg/String"], "Invalid node name: "),
         (["pub", "/x", "std_msgs/msg/Foo"], "The passed message type is invalid: "),
         (["pub", "/x", "std_msgs/msg/String", "{a: ["], "The passed value is no valid"),
         (["pub", "/x", "std_msgs/msg/String", "a: 1"], "Failed to populate field: "),

@@ -38,6 +38,7 @@ FIELD_KINDS = {
     float: numbers,
     float | None: st.none() | numbers,
     tuple[float, float]: st.tuples(numbers, numbers),
+    dict[str, float]: st.dictionaries(st.text(), numbers, max_size=3),
     EndCause: st.sampled_from(EndCause),
     EndCause | None: st.none() | st.sampled_from(EndCause),
 }

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from ros2_verbs.interface_text import code_of, nested_type
+from ros2_verbs.interface.show import code_of, nested_type
 from ros2_verbs.main import main
 
 GOLDEN = Path(__file__).parent / "golden" / "topic_verbs"

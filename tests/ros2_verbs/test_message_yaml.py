@@ -7,7 +7,7 @@ from geometry_msgs.msg import PoseWithCovariance, Twist, Vector3
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Byte, Float64MultiArray, String
 
-from ros2_verbs.message_yaml import Shown, to_csv, to_json, to_plain, to_yaml
+from ros2_verbs.messages.text import Shown, to_csv, to_json, to_plain, to_yaml
 
 GOLDEN = Path(__file__).parent / "golden" / "topic_verbs"
 CUT_AT_5 = Shown(length=5)

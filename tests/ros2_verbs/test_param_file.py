@@ -3,7 +3,7 @@
 import pytest
 
 from ros2_verbs.errors import VerbError
-from ros2_verbs.parameter_file import parameters_from_file
+from ros2_verbs.param.load import parameters_from_file
 
 FILE = """
 /**:

@@ -12,13 +12,11 @@ from rcl_interfaces.msg import (
 from rclpy.parameter import Parameter
 from tests.ros2_verbs.golden_files import golden
 
-from ros2_verbs.parameter_text import (
-    description_text,
-    dump_text,
-    loaded_text,
-    typed_parameter,
-    value_text,
-)
+from ros2_verbs.param.describe import description_text
+from ros2_verbs.param.dump import dump_text
+from ros2_verbs.param.get import value_text
+from ros2_verbs.param.load import loaded_text
+from ros2_verbs.param.set import typed_parameter
 
 READ_ONLY = (
     "parameter 'qos_overrides./parameter_events.publisher.depth' cannot be set "

@@ -2,12 +2,9 @@
 
 from pathlib import Path
 
-from ros2_verbs.window import (
-    BandwidthWindow,
-    DelayWindow,
-    RateWindow,
-    rate_report,
-)
+from ros2_verbs.topic.bw import BandwidthWindow
+from ros2_verbs.topic.delay import DelayWindow
+from ros2_verbs.topic.hz import RateWindow, rate_report
 
 GOLDEN = Path(__file__).parent / "golden" / "topic_verbs"
 MS = 1_000_000

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from tests.robots import SHIPPED
 
+from biped_description.robot import Robot
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from sim_node.biped import SimulatedBiped
@@ -74,32 +76,36 @@ class Walker:
 @pytest.fixture(scope="session")
 def static_walk() -> list[WaistSegment]:
     """Hand out the default walk without any correction."""
-    reference = WaistReference(GaitSettings(), CorrectionSettings())
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
     return [reference.segment(np.zeros(2)) for _ in range(SEGMENTS)]
 
 
 @pytest.fixture(scope="session")
 def shaky_walk() -> list[WaistSegment]:
     """Hand out the default walk with random corrections."""
-    reference = WaistReference(GaitSettings(), CorrectionSettings())
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
     actions = np.random.default_rng(5).uniform(-0.024, 0.024, (SEGMENTS, 2))
     return [reference.segment(action) for action in actions]
 
 
 @pytest.fixture(scope="session")
 def build_walker(static_walk) -> Callable[..., Walker]:
-    """Build walkers from limits, disturbances and a seed."""
+    """Build walkers from limits, disturbances, a seed and a robot."""
 
     def build(
-        limits: dict | None = None, disturbances: dict | None = None, seed: int = 0
+        limits: dict | None = None,
+        disturbances: dict | None = None,
+        seed: int = 0,
+        robot: Robot = SHIPPED,
+        start: WaistSegment = static_walk[0],
     ) -> Walker:
         settings = SimSettings(
             LimitSettings(**(limits or {})), DisturbanceSettings(**(disturbances or {}))
         )
         rng = np.random.default_rng(seed)
         ticks = []
-        robot = SimulatedBiped(settings, static_walk[0], rng, on_tick=ticks.append)
-        return Walker(robot, rng, ticks)
+        simulated = SimulatedBiped(robot, settings, start, rng, on_tick=ticks.append)
+        return Walker(simulated, rng, ticks)
 
     return build
 

@@ -24,18 +24,21 @@ DISTURBED = {
 # Prints the hash of the static walk's first two seconds.
 PROGRAM = """
 import numpy as np
+from biped_description.robot import Robot
+from biped_description.settings import RobotSettings
 from sim_node.biped import SimulatedBiped
 from sim_node.settings import SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
 
-reference = WaistReference(GaitSettings(), CorrectionSettings())
+robot = Robot(RobotSettings())
+reference = WaistReference(robot, GaitSettings(), CorrectionSettings())
 segments = [reference.segment(np.zeros(2)) for _ in range(100)]
-robot = SimulatedBiped(SimSettings(), segments[0], np.random.default_rng(0))
-robot.begin_walk(1)
+walker = SimulatedBiped(robot, SimSettings(), segments[0], np.random.default_rng(0))
+walker.begin_walk(1)
 for segment in segments:
-    robot.execute(segment)
-print(robot.trajectory_sha256)
+    walker.execute(segment)
+print(walker.trajectory_sha256)
 """
 EVERY_DISTURBANCE = pytest.mark.parametrize(
     "disturbances", [{}, DISTURBED], ids=["undisturbed", "disturbed"]

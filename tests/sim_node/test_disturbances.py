@@ -268,13 +268,31 @@ def test_a_noise_changes_no_draw_of_another(new_walker, shaky_walk, size):
     assert plain == more
 
 
-def test_without_noise_as_many_numbers_are_drawn(new_walker, shaky_walk):
+def test_without_noise_a_disturbed_walk_draws_as_many_numbers(new_walker, shaky_walk):
     states = []
     for noises in ({}, NOISES):
-        walker = new_walker(STURDY, noises)
+        walker = new_walker(STURDY, noises | {"mass_error": 0.01})
         walker.walk(shaky_walk[:5])
         states.append(walker.rng.bit_generator.state)
     assert states[0] == states[1]
+
+
+@pytest.mark.parametrize(
+    "constant", [{}, {"friction": 0.7, "torque_limit_factor": 0.9}]
+)
+def test_a_walk_without_chance_draws_nothing(new_walker, shaky_walk, constant):
+    walker = new_walker(STURDY, constant)
+    before = walker.rng.bit_generator.state
+    walker.walk(shaky_walk[:5])
+    assert walker.rng.bit_generator.state == before
+
+
+@pytest.mark.parametrize(
+    "size",
+    [{"push_force_n": 1.0}, {"mass_error": 0.1}, *({name: 0.1} for name in NOISES)],
+)
+def test_every_size_brings_chance_into_the_walk(size):
+    assert DisturbanceSettings(**size).random
 
 
 @pytest.mark.parametrize("duration_s", [1e-4, 0.0019, 0.002])

@@ -6,8 +6,10 @@ import msgspec
 import numpy as np
 import pybullet
 import pytest
+from tests.robots import SHIPPED
 
-from biped_description.joints import TORQUE_LIMIT
+from biped_description.robot import Robot
+from biped_description.settings import RobotSettings
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.wire import decode, encode
@@ -16,6 +18,7 @@ from sim_node.errors import WorldClosedError
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
 
+SLOW = Robot(RobotSettings(velocity_limit_rad_s=0.3))
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -49,14 +52,14 @@ def test_a_smaller_zmp_limit_ends_the_walk_earlier(new_walker, static_walk):
 
 
 def test_a_joint_that_turns_too_fast_ends_the_walk(new_walker, static_walk):
-    walker = new_walker({"joint_velocity_rad_s": 0.3})
+    walker = new_walker(robot=SLOW)
     assert walker.walk(static_walk)[-1].end_cause is EndCause.JOINT_VELOCITY
 
 
 def test_it_ends_at_the_very_tick_in_which_the_joint_is_too_fast(
     new_walker, static_walk
 ):
-    walker = new_walker({"joint_velocity_rad_s": 0.3})
+    walker = new_walker(robot=SLOW)
     walker.walk(static_walk)
     too_fast = np.abs(walker.joints[1]).max(axis=1) >= 0.3
     assert np.flatnonzero(too_fast).tolist() == [len(too_fast) - 1]
@@ -82,7 +85,9 @@ def test_a_saturation_that_eases_off_starts_anew(new_walker, shaky_walk):
     lasting = {"torque_saturation_s": 0.8, "zmp_error_m": 1.0}
     walker = new_walker(lasting, {"torque_limit_factor": 0.35})
     assert walker.walk(shaky_walk)[-1].end_cause is EndCause.TORQUE_SATURATION
-    saturated = (np.abs(walker.joints[2]) >= 0.999 * 0.35 * TORQUE_LIMIT).any(axis=1)
+    saturated = (
+        np.abs(walker.joints[2]) >= 0.999 * 0.35 * SHIPPED.torque_limit_nm
+    ).any(axis=1)
     assert (saturated[-400:].all(), saturated[:-400].sum() > 400) == (True, True)
 
 
@@ -323,7 +328,7 @@ def test_beyond_the_references_there_is_no_way(walker, static_walk):
 def test_a_segment_that_comes_late_is_followed_from_the_present_tick(
     sturdy_walker, static_walk
 ):
-    ahead = WaistReference(GaitSettings(), CorrectionSettings(), 50)
+    ahead = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings(), 50)
     first, second = (ahead.segment(np.zeros(2)) for _ in range(2))
     sturdy_walker.robot.begin_walk(1)
     sturdy_walker.robot.follow(first)

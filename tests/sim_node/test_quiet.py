@@ -6,7 +6,13 @@ import sys
 
 import pytest
 
-BUILD_A_WORLD = "import sim_node.world as w; w.World().close()"
+BUILD_A_WORLD = """
+from biped_description.robot import Robot
+from biped_description.settings import RobotSettings
+from sim_node.world import World
+
+World(Robot(RobotSettings())).close()
+"""
 CHATTER = """
 import ctypes, sys
 from sim_node.quiet import engine_chatter_dropped

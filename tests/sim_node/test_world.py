@@ -3,10 +3,8 @@
 import numpy as np
 import pybullet
 import pytest
+from tests.robots import SHIPPED
 
-from biped_description.dimensions import BIPED
-from biped_description.kinematics import leg_joint_positions
-from biped_description.links import LINK_MASSES
 from sim_node.errors import SimulationError, SnapshotError, WorldClosedError
 from sim_node.world import World
 
@@ -16,7 +14,7 @@ IN_THE_AIR = np.array([0.3, -0.2, 3.0])
 
 @pytest.fixture
 def world():
-    world = World()
+    world = World(SHIPPED)
     yield world
     world.close()
 
@@ -31,7 +29,7 @@ def momentum(world):
         physicsClientId=world.client,
     )
     velocities = np.array([base, *(link[6] for link in links)])
-    return LINK_MASSES @ velocities
+    return SHIPPED.link_masses_kg @ velocities
 
 
 # -- readings --------------------------------------------------------------------------
@@ -47,7 +45,7 @@ def test_the_waist_of_a_tilted_robot_is_below_its_torso(world):
     pybullet.resetBasePositionAndOrientation(
         world.robot, (0.0, 0.0, 3.0), quarter_turn_about_x, physicsClientId=world.client
     )
-    expected = [0.0, BIPED.torso_com_height, 3.0]
+    expected = [0.0, SHIPPED.settings.torso_com_height_m, 3.0]
     np.testing.assert_allclose(world.waist()[0], expected, rtol=0, atol=1e-8)
 
 
@@ -56,7 +54,7 @@ def test_the_waist_of_a_spinning_robot_swings_about_its_torso(world):
     pybullet.resetBaseVelocity(
         world.robot, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), physicsClientId=world.client
     )
-    expected = [1.0 - 2.0 * BIPED.torso_com_height, 0.0, 0.0]
+    expected = [1.0 - 2.0 * SHIPPED.settings.torso_com_height_m, 0.0, 0.0]
     np.testing.assert_allclose(world.waist()[1], expected, rtol=0, atol=1e-7)
 
 
@@ -78,7 +76,7 @@ def test_a_placed_robot_is_at_rest(world):
 def test_a_falling_robot_gains_momentum_by_its_weight(world):
     world.place(IN_THE_AIR, STANDING)
     world.step(STANDING.tolist(), STANDING.tolist())
-    expected = [0.0, 0.0, -9.81 * BIPED.total_mass * 0.002]
+    expected = [0.0, 0.0, -9.81 * SHIPPED.mass_kg * 0.002]
     np.testing.assert_allclose(momentum(world), expected, rtol=0, atol=1e-9)
 
 
@@ -111,7 +109,7 @@ def test_without_torque_the_joints_are_free(world):
 
 def test_sliding_soles_are_braked_by_friction_times_weight(world):
     waist, left_foot = np.array([[0.0, 0.0, 0.475]]), np.array([[0.0, 0.09, 0.0]])
-    q = leg_joint_positions(waist, left_foot, left_foot * (1.0, -1.0, 1.0))[0]
+    q = SHIPPED.leg_joint_positions(waist, left_foot, left_foot * (1.0, -1.0, 1.0))[0]
     world.set_friction(0.05)
     world.place(waist[0], q)
     for _ in range(150):
@@ -121,7 +119,7 @@ def test_sliding_soles_are_braked_by_friction_times_weight(world):
     )
     for _ in range(100):
         world.step(q.tolist(), STANDING.tolist())
-    speed = momentum(world)[0] / BIPED.total_mass
+    speed = momentum(world)[0] / SHIPPED.mass_kg
     assert speed == pytest.approx(1.0 - 0.05 * 9.81 * 0.2, abs=0.005)
 
 
@@ -141,7 +139,7 @@ def test_mass_factors_scale_mass_and_inertia(world):
 
 
 def test_a_world_knows_how_many_links_it_has(world):
-    assert world.n_links == len(LINK_MASSES)
+    assert world.n_links == len(SHIPPED.links)
 
 
 # -- states ----------------------------------------------------------------------------
@@ -182,7 +180,7 @@ def test_a_new_world_does_not_disturb_a_walk_under_way(new_walker, shaky_walk):
 
 
 def test_the_friction_of_one_world_is_not_that_of_another():
-    slippery, rough = World(), World()
+    slippery, rough = World(SHIPPED), World(SHIPPED)
     slippery.set_friction(0.1)
     rough.set_friction(0.8)
     frictions = [

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
+from tests.robots import SHIPPED
 
-from biped_description.joints import POSITION_LOWER, POSITION_UPPER
-from biped_description.kinematics import com_position, leg_joint_positions
 from trajectory_node.gait import plan_gait
 from trajectory_node.multilink_zmp import multilink_zmp
 from trajectory_node.settings import GaitSettings
@@ -14,8 +13,14 @@ G = 9.81  # [m/s^2]
 DT = 0.002  # [s]
 N = 40
 # A pose with nothing symmetric about it, held while the waist moves.
-POSE = np.random.default_rng(4).uniform(POSITION_LOWER, POSITION_UPPER, 12)
+POSE = np.random.default_rng(4).uniform(
+    SHIPPED.position_lower_rad, SHIPPED.position_upper_rad
+)
 HELD = np.tile(POSE, (N, 1))
+
+
+def zmp_of(waist: np.ndarray, q: np.ndarray) -> np.ndarray:
+    return multilink_zmp(SHIPPED, waist, q, DT)
 
 
 def accelerating(x: float, y: float, z: float) -> np.ndarray:
@@ -27,16 +32,16 @@ def accelerating(x: float, y: float, z: float) -> np.ndarray:
 def static_walk_zmp_error(double_support_s: float) -> np.ndarray:
     """Return the norm of the static walk's ZMP error at every tick [m]."""
     settings = GaitSettings(double_support_s=double_support_s)
-    plan = plan_gait(settings)
-    waist = static_waist(plan, settings.waist_height_m)
-    q = leg_joint_positions(waist, plan.left_foot, plan.right_foot)
-    return np.linalg.norm(multilink_zmp(waist, q, DT) - plan.zmp_reference, axis=1)
+    plan = plan_gait(settings, SHIPPED.settings)
+    waist = static_waist(SHIPPED, plan, settings.waist_height_m)
+    q = SHIPPED.leg_joint_positions(waist, plan.left_foot, plan.right_foot)
+    return np.linalg.norm(zmp_of(waist, q) - plan.zmp_reference, axis=1)
 
 
 def test_the_zmp_of_a_standing_robot_is_under_its_com():
     waist = accelerating(0.0, 0.0, 0.0)
-    expected = com_position(waist, HELD)[:, :2]
-    np.testing.assert_allclose(multilink_zmp(waist, HELD, DT), expected, atol=1e-12)
+    expected = SHIPPED.com_position(waist, HELD)[:, :2]
+    np.testing.assert_allclose(zmp_of(waist, HELD), expected, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -45,10 +50,10 @@ def test_the_zmp_of_a_standing_robot_is_under_its_com():
 )
 def test_the_zmp_of_a_rigid_push_lags_by_height_over_gravity(acceleration):
     waist = accelerating(*acceleration)
-    com = com_position(waist, HELD)
+    com = SHIPPED.com_position(waist, HELD)
     horizontal, vertical = np.array(acceleration[:2]), G + acceleration[2]
     expected = com[:, :2] - horizontal * com[:, 2:] / vertical
-    np.testing.assert_allclose(multilink_zmp(waist, HELD, DT), expected, atol=1e-9)
+    np.testing.assert_allclose(zmp_of(waist, HELD), expected, atol=1e-9)
 
 
 @pytest.mark.parametrize(

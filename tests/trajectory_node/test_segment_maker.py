@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from tests.learner_node.walking.observations import observation
+from tests.robots import SHIPPED
 
 from msgs_json.end_cause import EndCause
 from msgs_json.wire import RefusedMessageError
@@ -19,7 +20,7 @@ START = 100  # of the simulation's clock
 
 
 def new_reference():
-    return WaistReference(GaitSettings(), CorrectionSettings())
+    return WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
+from biped_description.robot import Robot
 from biped_ros.cdr import string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import (
@@ -18,7 +19,6 @@ from msgs_json import topics
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import decode
-from trajectory_node.errors import InfeasibleGaitError
 from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
@@ -41,7 +41,10 @@ class TrajectoryNode(GuardedNode):
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(TrajectorySettings)
         reference = WaistReference(
-            settings.gait, settings.correction, settings.look_ahead_ticks
+            Robot(settings.robot),
+            settings.gait,
+            settings.correction,
+            settings.look_ahead_ticks,
         )
         self._maker = SegmentMaker(reference, settings.correction_limit_m)
         self._gaps = ObservationGaps()
@@ -74,7 +77,7 @@ class TrajectoryNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(TrajectoryNode, wrong_input=(InfeasibleGaitError,))
+    return run_node(TrajectoryNode)
 
 
 if __name__ == "__main__":

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.timing import control_ticks
+from biped_description.settings import RobotSettings
 
 # A foot or the ZMP cannot be moved in less time than this.
 _SHORTEST_PHASE_S = 0.1
 _ROUNDING_S = 1e-9
+LONGEST_LOOK_AHEAD_TICKS = 600
+"""The plan runs on beyond the walk's end, standing, for look-ahead."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +33,7 @@ class GaitSettings:
     steps: int = setting(5, "steps", "single supports; the last of several closes the feet", lower=1, upper=50)  # fmt: skip  # noqa: E501
     step_length_m: float = setting(0.10, "m", "advance of each foothold over the other foot's", lower=-0.5, upper=0.5)  # fmt: skip  # noqa: E501
     swing_height_m: float = setting(0.03, "m", "clearance of the swing foot at mid-swing", lower=0.0, upper=0.2)  # fmt: skip  # noqa: E501
-    waist_height_m: float = setting(0.475, "m", "constant height of the hip line", lower=0.2, upper=0.6)  # fmt: skip  # noqa: E501
+    waist_height_m: float = setting(0.475, "m", "constant height of the hip line", above=0.0, upper=2.0)  # fmt: skip  # noqa: E501
 
     @property
     def single_support_s(self) -> float:
@@ -40,6 +44,11 @@ class GaitSettings:
     def duration_s(self) -> float:
         """t_w: the whole walk, (steps + 1) T_step [s]."""
         return (self.steps + 1) * self.step_period_s
+
+    @property
+    def walk_ticks(self) -> int:
+        """Control ticks of the whole walk."""
+        return control_ticks(self.duration_s)
 
     def __post_init__(self) -> None:
         """Refuse values out of range or at odds with one another."""
@@ -84,13 +93,18 @@ class CorrectionSettings:
 class TrajectorySettings:
     """All of the trajectory node."""
 
+    robot: RobotSettings = section(RobotSettings)
     gait: GaitSettings = section(GaitSettings)
     correction: CorrectionSettings = section(CorrectionSettings)
     correction_limit_m: float = setting(
         0.024, "m", "corrections beyond this are refused", above=0.0, upper=0.2
     )
     look_ahead_ticks: int = setting(
-        50, "control ticks", "reference handed out beyond a segment", lower=1, upper=600
+        50,
+        "control ticks",
+        "reference handed out beyond a segment, for late peers in real time",
+        lower=1,
+        upper=LONGEST_LOOK_AHEAD_TICKS,
     )
 
     def __post_init__(self) -> None:

@@ -9,11 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import TICKS_PER_LEARNING_TICK
+from biped_description.robot import Robot
 from msgs_json.segment import WaistSegment
 from trajectory_node.bspline import CorrectionSpline
 from trajectory_node.errors import TrajectoryError
-from trajectory_node.gait import LOOK_AHEAD_TICKS, plan_gait
-from trajectory_node.settings import CorrectionSettings, GaitSettings
+from trajectory_node.gait import plan_gait
+from trajectory_node.settings import (
+    LONGEST_LOOK_AHEAD_TICKS,
+    CorrectionSettings,
+    GaitSettings,
+)
 from trajectory_node.static_waist import static_waist
 
 
@@ -22,6 +27,7 @@ class WaistReference:
 
     def __init__(
         self,
+        robot: Robot,
         gait: GaitSettings,
         correction: CorrectionSettings,
         look_ahead_ticks: int = 1,
@@ -29,6 +35,7 @@ class WaistReference:
         """Plan the walk.
 
         Args:
+            robot: that walks.
             gait: the walk.
             correction: the spline.
             look_ahead_ticks: rows handed out beyond the learning tick. One is needed
@@ -37,13 +44,13 @@ class WaistReference:
         Raises:
             InfeasibleGaitError: the robot cannot reach what the gait asks for.
         """
-        if not 1 <= look_ahead_ticks <= LOOK_AHEAD_TICKS:
+        if not 1 <= look_ahead_ticks <= LONGEST_LOOK_AHEAD_TICKS:
             raise TrajectoryError(
                 f"look_ahead_ticks = {look_ahead_ticks}: "
-                f"must be between 1 and {LOOK_AHEAD_TICKS}"
+                f"must be between 1 and {LONGEST_LOOK_AHEAD_TICKS}"
             )
-        self.plan = plan_gait(gait)
-        self.static_waist = static_waist(self.plan, gait.waist_height_m)
+        self.plan = plan_gait(gait, robot.settings)
+        self.static_waist = static_waist(robot, self.plan, gait.waist_height_m)
         self.rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
         """Rows of every segment."""
         self._spline = CorrectionSpline(correction, self.rows)

@@ -1,19 +1,20 @@
 """Verbs of a command are entry points: whoever installs a package adds verbs by it.
 
-An entry point's name is the verb, its object a function `add_parser(parsers, words)`.
-Only the verb that is called for is loaded: most bring ROS, the physics or compiled code
-with them, which takes seconds that the others need not wait for. Where no verb is
-named, as in a call for help, all are.
+An entry point's name is the verb; what it is to be is said where the command is, for
+`biped` a function `add_parser(parsers, words)`. Only the verb that is called for is
+loaded: most bring ROS, the physics or compiled code with them, which takes seconds that
+the others need not wait for. Where no verb is named, as in a call for help, all are;
+one that cannot be loaded is named with its package and left out.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from importlib.metadata import EntryPoint, entry_points
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from biped_common.command_line import CommandError
+from biped_common.entry_points import EntryPoint, entry_points
 
 
 def add_verbs(parsers: Any, group: str, words: Sequence[str]) -> None:
@@ -27,24 +28,43 @@ def add_verbs(parsers: Any, group: str, words: Sequence[str]) -> None:
     Raises:
         CommandError: the verb that was called for cannot be loaded.
     """
-    found = {point.name: point for point in entry_points(group=group)}
-    chosen = [found[name] for name in words[:1] if name in found]
-    if chosen:
-        _loaded(chosen[0])(parsers, words[1:])
+    use_verbs(group, words, lambda _, add_parser: add_parser(parsers, words[1:]))
+
+
+def use_verbs(
+    group: str, words: Sequence[str], use: Callable[[str, Any], object]
+) -> None:
+    """Load the verb that the words begin with, or all verbs.
+
+    Args:
+        group: of the entry points.
+        words: of the command line, from the verb on.
+        use: what to do with the name and the object of each; where it fails, the verb
+            counts as one that cannot be loaded.
+
+    Raises:
+        CommandError: the verb that was called for cannot be loaded.
+    """
+    found = entry_points(group)
+    if words and words[0] in found:
+        _use(found[words[0]], use)
         return
     for name in sorted(found):
         try:
-            _loaded(found[name])(parsers, words[1:])
+            _use(found[name], use)
         except CommandError as error:
             print(f"left out: {error}", file=sys.stderr)
 
 
-def _loaded(point: EntryPoint) -> Any:
+def _use(point: EntryPoint, use: Callable[[str, Any], object]) -> None:
     try:
-        return point.load()
-    except Exception as error:
-        package = point.dist.name if point.dist is not None else "an unknown package"
+        use(point.name, point.load())
+    except CommandError:
+        raise  # of a verb below this one
+    except (Exception, SystemExit) as error:
+        # In one line, whatever the package has to say.
+        text = " ".join(str(error).split())
         raise CommandError(
-            f"verb {point.name} of {package} cannot be loaded: "
-            f"{type(error).__name__}: {error}"
+            f"verb {point.name} of {point.package} cannot be loaded: "
+            f"{type(error).__name__}: {text}"
         ) from error

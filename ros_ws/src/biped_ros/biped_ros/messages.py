@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 
 import numpy as np
@@ -28,6 +29,8 @@ SEGMENT_PARTS = (
     "extent",
 )
 _AXES = 3
+_LENGTH = struct.Struct("<I")  # of a sequence
+_TRANSFORM_BYTES = 7 * 8
 _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 
 
@@ -94,6 +97,35 @@ def segment_template(rows: int) -> MessageTemplate:
         template.integer(0).integer(0).integer(0)
         template.integer(row * CONTROL_PERIOD_US * 1000)
     return template.finished()
+
+
+class SegmentReader:
+    """Reads waist segments of any number of control ticks."""
+
+    def __init__(self) -> None:
+        """Read nothing yet."""
+        self._template = segment_template(rows=0)
+        self._at_length = len(self._template) - _LENGTH.size
+        self._rows = 0
+
+    def read(self, message: bytes) -> tuple[NDArray[np.float64], int]:
+        """Return the numbers of a segment's message, and its clock ticks.
+
+        Raises:
+            MalformedMessageError: not a segment of this form.
+        """
+        if len(message) < self._at_length + _LENGTH.size:
+            raise MalformedMessageError("not a waist reference")
+        (rows,) = _LENGTH.unpack_from(message, self._at_length)
+        # A template is made of no more rows than there are.
+        if not 0 < rows * len(SEGMENT_PARTS) * _TRANSFORM_BYTES <= len(message):
+            raise MalformedMessageError(f"not a waist reference of {rows} rows")
+        if rows != self._rows:
+            self._template, self._rows = segment_template(rows), rows
+        read = self._template.read(message)
+        if read is None:
+            raise MalformedMessageError(f"not a waist reference of {rows} rows")
+        return read
 
 
 def segment_values(segment: WaistSegment) -> NDArray[np.float64]:

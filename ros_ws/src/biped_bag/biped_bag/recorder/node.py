@@ -22,7 +22,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
 from mcap.records import Attachment
@@ -44,13 +43,13 @@ from biped_bag.records import (
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.layout import fresh_folder
 from biped_bag.storage.writer import BagWriter
-from biped_common.settings import SettingsError
+from biped_common.settings import SettingsError, from_json
 from biped_ros.guarded import GuardedNode
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.topics import Topic
 
-NAME = "recorder_node"
+NAME = topics.RECORDER_NODE
 _TURN_S = 0.02
 _LOOK_PERIOD_S = 0.1
 # Long enough for the reason to get around before the node ends.
@@ -145,7 +144,7 @@ class RecorderNode(GuardedNode):
         settings = self._settings
         asked_for = Path(settings.folder).absolute()
         folder = fresh_folder(asked_for) if settings.number_if_taken else asked_for
-        run = _texts("run", settings.run)
+        run = from_json("run", settings.run, dict[str, str])
         attached = []
         if folder != asked_for:
             # Begun in the middle of a run: the memory there is not the one begun with.
@@ -222,20 +221,6 @@ class RecorderNode(GuardedNode):
             text = f"recording stopped: {self._error}"
             self.remark(DiagnosticStatus.ERROR, "recording", text)
         super()._publish_diagnostics()
-
-
-def _texts(key: str, text: str) -> dict[str, str]:
-    """Return a JSON object of texts.
-
-    Raises:
-        SettingsError: it is something else.
-    """
-    try:
-        return msgspec.json.decode(text, type=dict[str, str])
-    except msgspec.DecodeError as error:
-        raise SettingsError(
-            key, text, f"must be a JSON object of texts, {error}"
-        ) from None
 
 
 def _attachment(file: Path) -> Attachment:

@@ -11,7 +11,6 @@ from biped_bag.errors import BagError
 from biped_bag.records import FROM_NOTHING, RUN_RECORD
 from biped_bag.storage.reader import BagReader
 from biped_common.settings import from_mapping
-from biped_common.timing import CONTROL_PERIOD_US, microseconds
 from learner_node.checkpoint import CheckpointError, read_checkpoint
 from learner_node.walking.session import LearningSession
 from learner_node.walking.settings import LearnerSettings
@@ -37,8 +36,7 @@ def recorded_session(bag: BagReader) -> LearningSession:
         seed, begins_with = int(record.metadata["seed"]), record.metadata["begins_with"]
     except (KeyError, TypeError, ValueError, yaml.YAMLError) as error:
         raise BagError(f"{bag.path}: its record {RUN_RECORD}: {error!r}") from None
-    duration_s = from_mapping(GaitSettings, gait).duration_s
-    walk_ticks = microseconds(duration_s) // CONTROL_PERIOD_US
+    walk_ticks = from_mapping(GaitSettings, gait).walk_ticks
     session = LearningSession(from_mapping(LearnerSettings, learner), walk_ticks, seed)
     if begins_with != FROM_NOTHING:
         _restore(session, bag, begins_with)

@@ -115,7 +115,7 @@ class _Replay:
         session, status = self._session, walk.status
         same_memory = status is None or (
             status.episodes == session.episodes
-            and status.memory_sha256 == session.learner.memory_sha256()
+            and status.memory_sha256 == session.memory_sha256()
         )
         if same_memory and (walk.episode == 1 or _frozen_by_user(walk)):
             return None
