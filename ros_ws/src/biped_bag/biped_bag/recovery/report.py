@@ -83,7 +83,7 @@ class RecoveryReport:
             and not any(topic.touched for topic in self.topics.values())
         )
 
-    def to_mapping(self) -> dict[str, Any]:
+    def as_mapping(self) -> dict[str, Any]:
         """Return the report for scripts."""
         return {
             **dataclasses.asdict(self),

@@ -19,6 +19,7 @@ import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import SeekingReader
+from mcap.records import Statistics
 from mcap.stream_reader import StreamReader
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC as MAGIC
@@ -80,7 +81,7 @@ def mapped(file: Path) -> Iterator[mmap.mmap]:
         raise UnusableFileError(f"{file}: cannot be read ({error.strerror})") from None
 
 
-def sound_summary(file: Path) -> Summary:
+def sound_summary(file: Path) -> tuple[Summary, Statistics]:
     """Return what a file's end tells of it, once all of it is found whole.
 
     Raises:
@@ -97,7 +98,7 @@ def sound_summary(file: Path) -> Summary:
             _check_chunks(file, content)
     if end.summary is None or end.summary.statistics is None:
         raise DamagedFileError(f"{file}: it has no summary")
-    return end.summary
+    return end.summary, end.summary.statistics
 
 
 def file_end(file: Path, content: mmap.mmap) -> FileEnd:

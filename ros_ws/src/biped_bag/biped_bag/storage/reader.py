@@ -10,7 +10,7 @@ recorded. What failures do:
 from __future__ import annotations
 
 import heapq
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from biped_bag.errors import BagError
 from biped_bag.storage.contents import BagMessage, BagTopic, message_of, topic_of
 from biped_bag.storage.integrity import DAMAGE, DamagedFileError, sound_summary
 from biped_bag.storage.layout import broken, find_files
-from biped_bag.storage.metadata import FILE_NAME
+from biped_bag.storage.metadata import FILE_NAME, BagMetadata, FileInfo
 
 
 class BagReader:
@@ -40,23 +40,23 @@ class BagReader:
         self.path = path
         self.files, self._told = find_files(path)
         self.topics: dict[str, BagTopic] = {}
-        self.message_count = 0
-        times: list[tuple[int, int]] = []
+        held = BagMetadata()
         for file in self.files:
             try:
-                summary = sound_summary(file)
+                summary, statistics = sound_summary(file)
             except DamagedFileError as error:
                 raise broken(path, str(error)) from None
-            self._add_topics(file, summary)
-            statistics = summary.statistics
-            assert statistics is not None
-            self.message_count += statistics.message_count
-            if statistics.message_count:
-                times.append(
-                    (statistics.message_start_time, statistics.message_end_time)
+            self._add_topics(file, summary, statistics.channel_message_counts)
+            held.files.append(
+                FileInfo(
+                    file.name,
+                    statistics.message_start_time,
+                    statistics.message_end_time,
+                    statistics.message_count,
                 )
-        self.start_ns = min((start for start, _ in times), default=0)
-        self.end_ns = max((end for _, end in times), default=0)
+            )
+        self.message_count = held.message_count
+        self.start_ns, self.end_ns = held.start_ns, held.end_ns
         self._compare_with_metadata()
 
     @property
@@ -136,9 +136,9 @@ class BagReader:
             except DAMAGE as error:
                 raise broken(self.path, f"{file}: damaged ({error})") from None
 
-    def _add_topics(self, file: Path, summary: Summary) -> None:
-        assert summary.statistics is not None
-        counts = summary.statistics.channel_message_counts
+    def _add_topics(
+        self, file: Path, summary: Summary, counts: Mapping[int, int]
+    ) -> None:
         for channel in summary.channels.values():
             schema = summary.schemas.get(channel.schema_id)
             if schema is None:

@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"biped bag: {error}", file=sys.stderr)
         return FAILED
     if options.json:
-        print_json(report.to_mapping())
+        print_json(report.as_mapping())
     else:
         print(report.text())
     return 0 if report.nothing_lost else SOMETHING_LOST

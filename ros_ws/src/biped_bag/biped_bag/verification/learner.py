@@ -10,7 +10,7 @@ import yaml
 from biped_bag.errors import BagError
 from biped_bag.records import FROM_NOTHING, RUN_RECORD
 from biped_bag.storage.reader import BagReader
-from biped_common.settings import from_mapping
+from biped_common.settings import SettingsError, from_mapping
 from learner_node.checkpoint import CheckpointError, read_checkpoint
 from learner_node.walking.session import LearningSession
 from learner_node.walking.settings import LearnerSettings
@@ -21,8 +21,8 @@ def recorded_session(bag: BagReader) -> LearningSession:
     """Return the learner with the recorded settings, seed and checkpoint.
 
     Raises:
-        BagError: the bag does not say how the run began.
-        SettingsError: its settings are none of this program.
+        BagError: the bag does not say how the run began, or with settings and a memory
+            of another version of this program.
     """
     record = next(bag.records(RUN_RECORD), None)
     if record is None:
@@ -36,8 +36,15 @@ def recorded_session(bag: BagReader) -> LearningSession:
         seed, begins_with = int(record.metadata["seed"]), record.metadata["begins_with"]
     except (KeyError, TypeError, ValueError, yaml.YAMLError) as error:
         raise BagError(f"{bag.path}: its record {RUN_RECORD}: {error!r}") from None
-    walk_ticks = from_mapping(GaitSettings, gait).walk_ticks
-    session = LearningSession(from_mapping(LearnerSettings, learner), walk_ticks, seed)
+    try:
+        walk_ticks = from_mapping(GaitSettings, gait).walk_ticks
+        settings = from_mapping(LearnerSettings, learner)
+    except SettingsError as error:
+        raise BagError(
+            f"{bag.path}: was recorded by another version, with settings that this one "
+            f"does not have ({error})"
+        ) from None
+    session = LearningSession(settings, walk_ticks, seed)
     if begins_with != FROM_NOTHING:
         _restore(session, bag, begins_with)
     return session

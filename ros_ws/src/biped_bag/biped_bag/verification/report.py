@@ -7,6 +7,7 @@ from enum import StrEnum
 from typing import Any
 
 from biped_bag.verification.cost import CostCheck
+from msgs_json.observation import Observation
 
 
 class Verdict(StrEnum):
@@ -68,11 +69,24 @@ class WalkCheck:
         """
         return self.learning is None and self.corrections > 0
 
-    def differ(self, difference: Difference) -> None:
-        """Take note of a difference."""
+    def differ(
+        self,
+        place: Observation,
+        what: str,
+        recorded: Any,
+        recomputed: Any,
+        ticks_later: int = 0,
+    ) -> None:
+        """Take note of a difference, at an observation or so many ticks later."""
         self.differences += 1
         if self.first_difference is None:
-            self.first_difference = difference
+            self.first_difference = Difference(
+                place.clock_ticks + ticks_later,
+                place.control_tick + ticks_later,
+                what,
+                recorded,
+                recomputed,
+            )
 
 
 @dataclass(frozen=True)

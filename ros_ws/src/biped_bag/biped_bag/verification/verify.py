@@ -18,12 +18,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
-from typing import Any
 
 import msgspec
 
 from biped_bag.verification.cost import recomputed_cost
-from biped_bag.verification.report import Difference, Verification, WalkCheck
+from biped_bag.verification.report import Verification, WalkCheck
 from biped_bag.verification.walks import RecordedWalk, recorded_walks
 from biped_common.timing import TICKS_PER_LEARNING_TICK
 from learner_node.walking.session import LearningSession
@@ -147,25 +146,33 @@ class _Replay:
             if recorded is None:
                 # The recording may have ended between the two.
                 if not (last and observation is walk.observations[-1]):
-                    _differ(check, observation, _CORRECTION, None, answer.tolist())
+                    check.differ(observation, _CORRECTION, None, answer.tolist())
             elif recorded.value_m.tobytes() == answer.tobytes():
                 check.identical += 1
             else:
                 both = recorded.value_m.tolist(), answer.tolist()
-                _differ(check, observation, _CORRECTION, *both)
+                check.differ(observation, _CORRECTION, *both)
         if result is None and (walk.result is not None or not last):
             self._stop_at_hole(walk, check, previous)
         elif result != walk.result and not (last and walk.result is None):
-            _differ(check, previous, "result", _plain(walk.result), _plain(result))
+            check.differ(
+                previous, "result", *map(msgspec.to_builtins, (walk.result, result))
+            )
         for clock_ticks in sorted(expected):
             since = clock_ticks - previous.clock_ticks
             value_m = expected[clock_ticks].value_m.tolist()
-            _differ(check, previous, _CORRECTION, value_m, None, since)
+            check.differ(previous, _CORRECTION, value_m, None, since)
 
     def _stop_at_hole(
         self, walk: RecordedWalk, check: WalkCheck, before: Observation
     ) -> None:
-        _differ(check, before, "observation", None, "one must have been there", 10)
+        check.differ(
+            before,
+            "observation",
+            None,
+            "one must have been there",
+            TICKS_PER_LEARNING_TICK,
+        )
         check.not_checked = "an observation is missing; the rest is not checked"
         if not _without_learning(walk):
             self._lost = _not_in_the_bag(f"an observation of walk {walk.number}")
@@ -184,26 +191,3 @@ def _frozen_by_user(walk: RecordedWalk) -> bool:
 
 def _not_in_the_bag(what: str) -> str:
     return f"{what} is not in the bag"
-
-
-def _differ(
-    check: WalkCheck,
-    place: Observation,
-    what: str,
-    recorded: Any,
-    recomputed: Any,
-    ticks_later: int = 0,
-) -> None:
-    check.differ(
-        Difference(
-            clock_ticks=place.clock_ticks + ticks_later,
-            control_tick=place.control_tick + ticks_later,
-            what=what,
-            recorded=recorded,
-            recomputed=recomputed,
-        )
-    )
-
-
-def _plain(result: EpisodeResult | None) -> Any:
-    return msgspec.to_builtins(result)
