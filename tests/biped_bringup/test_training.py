@@ -73,12 +73,16 @@ def test_a_run_with_a_memory_of_its_own_does_not_touch_another(training):
 # -- checkpoints -------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("disturbances", [(), DISTURBED], ids=["calm", "disturbed"])
+@pytest.mark.parametrize(
+    "changes",
+    [(), DISTURBED, ("learner.method=q_lambda",)],
+    ids=["calm", "disturbed", "q_lambda"],
+)
 @pytest.mark.parametrize("saved_after", [1, 3])
 def test_a_resumed_run_is_as_if_never_interrupted(
-    training, uninterrupted, tmp_path, saved_after, disturbances
+    training, uninterrupted, tmp_path, saved_after, changes
 ):
-    settings = quick(*SHORT, *disturbances)
+    settings = quick(*SHORT, *changes)
     learn(training(settings), saved_after).save(tmp_path / "memory.npz")
     resumed = learn(training(tmp_path / "memory.npz"), SHORT_EPISODES)
     assert record(resumed) == uninterrupted(settings).after(SHORT_EPISODES)

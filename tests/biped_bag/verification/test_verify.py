@@ -252,3 +252,13 @@ def test_the_middle_of_a_frozen_run_can_be_checked():
     found = verify(frozen.new_session(), status + rest)
     frozen.close()
     assert found.verdict is Verdict.VERIFIED
+
+
+def test_the_run_of_another_learner_is_verified_alike():
+    settings = load_settings("quick", changes=["learner.method=q_lambda"])
+    other = RecordedRun(settings, SEED)
+    other.walk(WALKS)
+    found = verify(other.new_session(), other.messages)
+    other.close()
+    assert found.verdict is Verdict.VERIFIED
+    assert [walk.learning for walk in found.walks] == [True] * WALKS
