@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 from tests.graph.domains import MODULE, own_domain
-from tests.ros2_verbs.golden_files import golden
+from tests.ros2_verbs.golden_texts import golden
 
 from ros2_verbs.main import main
 

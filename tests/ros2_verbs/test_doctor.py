@@ -5,7 +5,7 @@ import fcntl
 import pytest
 from rclpy.qos import LivelinessPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
-from tests.ros2_verbs.golden_files import golden
+from tests.ros2_verbs.golden_texts import golden
 
 from ros2_verbs.doctor import graph, host, installation
 from ros2_verbs.doctor.area import Area, complaints, report, summary

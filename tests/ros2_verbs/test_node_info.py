@@ -1,6 +1,6 @@
 """The text of `ros2 node info`; its look at a real graph is tested in tests/graph."""
 
-from tests.ros2_verbs.golden_files import golden
+from tests.ros2_verbs.golden_texts import golden
 
 from ros2_verbs.graph.names import NodeName
 from ros2_verbs.node.info import report

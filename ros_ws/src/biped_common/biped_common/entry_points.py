@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterator
 from glob import escape, glob
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,6 +25,18 @@ class EntryPoint(NamedTuple):
     attribute: str
     """Dotted; empty where the module itself is offered."""
     package: str
+
+    def docstring(self) -> str:
+        """Return the module's docstring from its source, without running the module."""
+        import ast  # here, for only a list of verbs needs it
+
+        spec = find_spec(self.module)
+        if spec is None:
+            raise ModuleNotFoundError(f"No module named '{self.module}'")
+        loader: Any = spec.loader
+        source = loader.get_source(self.module)
+        tree = ast.parse(source or "")
+        return ast.get_docstring(tree, clean=False) or ""
 
     def load(self) -> Any:
         """Import the module; return the object."""
@@ -46,12 +59,16 @@ def entry_points(group: str) -> dict[str, EntryPoint]:
 
 
 def _points_of(file: Path, group: str) -> Iterator[EntryPoint]:
+    text = file.read_text(encoding="utf-8", errors="replace")
+    heading = f"[{group}]"
+    if heading not in text:
+        return
     package = file.parent.stem.partition("-")[0]
     inside = False
-    for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
+    for line in text.splitlines():
         name, separator, value = (part.strip() for part in line.partition("="))
         if name.startswith("["):
-            inside = name == f"[{group}]"
+            inside = name == heading
         elif inside and separator:
             target = value.partition("[")[0]  # behind it stand extras
             module, _, attribute = (part.strip() for part in target.partition(":"))

@@ -28,37 +28,39 @@ def add_verbs(parsers: Any, group: str, words: Sequence[str]) -> None:
     Raises:
         CommandError: the verb that was called for cannot be loaded.
     """
-    use_verbs(group, words, lambda _, add_parser: add_parser(parsers, words[1:]))
+    use_verbs(group, words, lambda point, _: point.load()(parsers, words[1:]))
 
 
 def use_verbs(
-    group: str, words: Sequence[str], use: Callable[[str, Any], object]
+    group: str, words: Sequence[str], use: Callable[[EntryPoint, bool], object]
 ) -> None:
-    """Load the verb that the words begin with, or all verbs.
+    """Do something with the verb that the words begin with, or with each verb.
 
     Args:
         group: of the entry points.
         words: of the command line, from the verb on.
-        use: what to do with the name and the object of each; where it fails, the verb
-            counts as one that cannot be loaded.
+        use: gets an entry point, and whether the words begin with its name. Where it
+            fails, the verb counts as one that cannot be loaded.
 
     Raises:
         CommandError: the verb that was called for cannot be loaded.
     """
     found = entry_points(group)
     if words and words[0] in found:
-        _use(found[words[0]], use)
+        _use(found[words[0]], use, True)
         return
     for name in sorted(found):
         try:
-            _use(found[name], use)
+            _use(found[name], use, False)
         except CommandError as error:
             print(f"left out: {error}", file=sys.stderr)
 
 
-def _use(point: EntryPoint, use: Callable[[str, Any], object]) -> None:
+def _use(
+    point: EntryPoint, use: Callable[[EntryPoint, bool], object], called: bool
+) -> None:
     try:
-        use(point.name, point.load())
+        use(point, called)
     except CommandError:
         raise  # of a verb below this one
     except (Exception, SystemExit) as error:

@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from biped_common.command_line import INTERRUPTED
+from biped_common.entry_points import EntryPoint
 from biped_common.errors import BipedError
 from biped_common.signals import loading
 from biped_common.verbs import use_verbs
@@ -27,7 +28,7 @@ FAILED = 1
 TERMINATED = 143
 
 COMMANDS = "ros2.commands"
-"""Group of entry points; the package's docstring says what they are."""
+"""Group of entry points; the docstring of `ros2_verbs` says what they are."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -93,42 +94,31 @@ def make_parser(words: Sequence[str]) -> argparse.ArgumentParser:
         title="Commands",
         metavar="Call `ros2 <command> -h` for more detailed usage.",
     )
-
-    def add_command(name: str, module: Any) -> None:
-        parser = _with_help(commands, name, module)
-        if names[:1] != [name]:
-            return
-        if hasattr(module, "main"):
-            _add_options(parser, module)
-            return
-        verbs = parser.add_subparsers(
-            title="Verbs",
-            metavar=f"Call `ros2 {name} <verb> -h` for more detailed usage.",
-        )
-
-        def add_verb(verb: str, module: Any) -> None:
-            parser = _with_help(verbs, verb, module)
-            if names[1:2] == [verb]:
-                _add_options(parser, module)
-
-        use_verbs(f"ros2.{name}_verbs", names[1:], add_verb)
-
-    use_verbs(COMMANDS, names, add_command)
+    _add_verbs(commands, COMMANDS, names)
     return top
 
 
-def _with_help(parsers: Any, name: str, module: Any) -> argparse.ArgumentParser:
-    text = (module.__doc__ or "").partition("\n")[0].rstrip(".")
-    parser: argparse.ArgumentParser = parsers.add_parser(
-        name, help=text, description=text
-    )
-    parser.set_defaults(parser=parser)
-    return parser
+def _add_verbs(parsers: Any, group: str, names: Sequence[str]) -> None:
+    def add(point: EntryPoint, called: bool) -> None:
+        # What was not called for is not run, not even for its help.
+        module: Any = point.load() if called else None
+        text = module.__doc__ or "" if called else point.docstring()
+        text = text.partition("\n")[0].rstrip(".")
+        parser = parsers.add_parser(point.name, help=text, description=text)
+        parser.set_defaults(parser=parser)
+        if not called:
+            return
+        if group == COMMANDS and not hasattr(module, "main"):
+            verbs = parser.add_subparsers(
+                title="Verbs",
+                metavar=f"Call `ros2 {point.name} <verb> -h` for more detailed usage.",
+            )
+            _add_verbs(verbs, f"ros2.{point.name}_verbs", names[1:])
+        else:
+            module.add_arguments(parser)
+            parser.set_defaults(run=module.main)
 
-
-def _add_options(parser: argparse.ArgumentParser, module: Any) -> None:
-    module.add_arguments(parser)
-    parser.set_defaults(run=module.main)
+    use_verbs(group, names, add)
 
 
 def _failed(error: Exception) -> int:

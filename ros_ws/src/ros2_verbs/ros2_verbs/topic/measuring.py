@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator
+import math
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import numpy as np
 from rclpy.node import Node
 from rclpy.task import Future
 
@@ -47,7 +47,7 @@ def measured_topic(args: argparse.Namespace) -> Iterator[tuple[Node, Any]]:
     with graph_node(args) as node:
         topic = args.topic_name
         discover(args, lambda: bool(topic_types(node, topic)))
-        yield node, class_of_topic(node, topic, float("inf"), verb="measure")
+        yield node, class_of_topic(node, topic, math.inf, verb="measure")
 
 
 def measure(
@@ -87,14 +87,16 @@ def measure(
     spin(node, finished)
 
 
-def spread_text(durations_ns: Iterable[int]) -> str:
+def spread_text(durations_ns: Collection[int]) -> str:
     """Return the second line of what `hz` and `delay` print.
 
     Args:
         durations_ns: at least one; the deviation is the population's.
     """
-    seconds = np.fromiter(durations_ns, float) / NS_PER_S
+    seconds = [duration_ns / NS_PER_S for duration_ns in durations_ns]
+    mean = sum(seconds) / len(seconds)
+    variance = sum((value - mean) ** 2 for value in seconds) / len(seconds)
     return (
-        f"\tmin: {seconds.min():.3f}s max: {seconds.max():.3f}s "
-        f"std dev: {seconds.std():.5f}s window: {seconds.size}"
+        f"\tmin: {min(seconds):.3f}s max: {max(seconds):.3f}s "
+        f"std dev: {math.sqrt(variance):.5f}s window: {len(seconds)}"
     )

@@ -1,12 +1,11 @@
 """Rates, delays and bandwidths, as `hz`, `delay` and `bw` print them."""
 
-from pathlib import Path
+from tests.ros2_verbs.golden_texts import golden
 
 from ros2_verbs.topic.bw import BandwidthWindow
 from ros2_verbs.topic.delay import DelayWindow
 from ros2_verbs.topic.hz import RateWindow, rate_report
 
-GOLDEN = Path(__file__).parent / "golden" / "topic_verbs"
 MS = 1_000_000
 START = 1_000_000 * MS
 
@@ -17,14 +16,14 @@ def test_a_rate_is_printed_as_in_the_tutorial() -> None:
     middle = (58 * mean - 32 * MS) / 56
     inner = [middle + sign * 2.0 * MS for sign in (1, -1) for _ in range(28)]
     intervals = [round(value) for value in (5 * MS, 27 * MS, *inner)]
-    assert rate_report(intervals) + "\n" == (GOLDEN / "hz.txt").read_text()
+    assert rate_report(intervals) + "\n" == golden("topic_hz")
 
 
 def test_a_bandwidth_is_printed_as_in_the_tutorial() -> None:
     window = BandwidthWindow(100)
     for count in range(62):
         window.arrived(count * 16 * MS, 24)
-    assert f"{window.report(985 * MS)}\n" == (GOLDEN / "bw.txt").read_text()
+    assert f"{window.report(985 * MS)}\n" == golden("topic_bw")
 
 
 def test_a_rate_is_reported_once_a_second() -> None:

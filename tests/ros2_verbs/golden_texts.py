@@ -1,8 +1,8 @@
-"""Texts that the verbs must print; golden/graph_verbs/README.md says whence."""
+"""Texts that the verbs must print; golden/README.md says whence."""
 
 from pathlib import Path
 
-FOLDER = Path(__file__).parent / "golden" / "graph_verbs"
+FOLDER = Path(__file__).parent / "golden"
 
 
 def golden(name: str) -> str:

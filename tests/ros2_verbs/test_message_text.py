@@ -1,21 +1,20 @@
 """Messages as YAML, values and JSON, in the words of rosidl_runtime_py."""
 
 import json
-from pathlib import Path
 
 from geometry_msgs.msg import PoseWithCovariance, Twist, Vector3
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Byte, Float64MultiArray, String
+from tests.ros2_verbs.golden_texts import golden
 
 from ros2_verbs.messages.text import Shown, to_csv, to_json, to_plain, to_yaml
 
-GOLDEN = Path(__file__).parent / "golden" / "topic_verbs"
 CUT_AT_5 = Shown(length=5)
 
 
 def test_a_twist_is_shown_as_in_the_tutorial() -> None:
     text = to_yaml(Twist(linear=Vector3(x=2.0)))
-    assert f"{text}---\n" == (GOLDEN / "echo_twist.txt").read_text()
+    assert f"{text}---\n" == golden("topic_echo_twist")
 
 
 def test_long_strings_are_cut() -> None:
