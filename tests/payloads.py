@@ -4,6 +4,7 @@ from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms, EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.walk_plan import GaitPhase, WalkPlan
 
 PHASE = PhaseFlags(
     planned_right_support=True,
@@ -71,4 +72,20 @@ STATUS = LearnerStatus(
     simulated_s=63.2,
     memory_sha256="0a",
     trajectory_sha256="6f1c",
+)
+PLAN = WalkPlan(
+    walk_ticks=5625,
+    waist_m=(0.0, 0.0, 0.475),
+    left_foot_m=(0.0, 0.09, 0.0),
+    right_foot_m=(0.0, -0.09, 0.0),
+    zmp_m=(0.02, 0.0),
+    phases=(
+        GaitPhase(from_tick=0, right_support=False, double_support=True, step_index=0),
+        GaitPhase(
+            from_tick=625, right_support=False, double_support=False, step_index=1
+        ),
+        GaitPhase(
+            from_tick=1038, right_support=True, double_support=True, step_index=1
+        ),
+    ),
 )

@@ -81,7 +81,7 @@ class LearnerNode(GuardedNode):
         self._saved_episodes: int | None = None
         self._gaps = ObservationGaps()
         self._seen = ("", -1)
-        self._template = correction_template(self.instance)
+        self._template = correction_template()
         self._corrections: Publisher | None = None
         self._episodes = self.publisher(topics.EPISODE)
         self._status = self.publisher(topics.LEARNER_STATUS)

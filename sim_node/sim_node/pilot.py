@@ -60,7 +60,7 @@ class Pilot:
         Raises:
             RefusedMessageError: the segment is not for now.
         """
-        self._check(clock_ticks)
+        self.answered(clock_ticks)
         self.segment = segment
         try:
             self.observation = self.biped.execute(segment)
@@ -74,7 +74,7 @@ class Pilot:
         Raises:
             RefusedMessageError: the segment is not for now.
         """
-        self._check(clock_ticks)
+        self.answered(clock_ticks)
         try:
             self.biped.follow(segment)
         except ValueError as error:
@@ -104,11 +104,18 @@ class Pilot:
                 f"result of walk {result.episode}, the present one is {self.walks}"
             )
 
-    def _check(self, clock_ticks: int) -> None:
-        expected = None if self.observation is None else self.observation.clock_ticks
-        if clock_ticks != expected:
+    def answered(self, clock_ticks: int) -> Observation:
+        """Return the observation that a segment of this time answers.
+
+        Raises:
+            RefusedMessageError: it is not the present one, or the walk is over.
+        """
+        observation = self.observation
+        expected = None if observation is None else observation.clock_ticks
+        if observation is None or clock_ticks != expected:
             raise RefusedMessageError(
                 f"segment for clock tick {clock_ticks}, the robot waits at {expected}"
             )
         if self.biped.end_cause is not None:
             raise RefusedMessageError(f"the walk is over: {self.biped.end_cause}")
+        return observation

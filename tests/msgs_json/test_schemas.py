@@ -16,6 +16,7 @@ from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms
 from msgs_json.observation import Observation, PhaseFlags
 from msgs_json.schemas import PAYLOADS, file_name, schema_text
+from msgs_json.walk_plan import GaitPhase, Point
 from msgs_json.wire import MalformedMessageError, decode, encode
 
 FILES = resources.files(schemas)
@@ -39,6 +40,7 @@ FIELD_KINDS = {
     float | None: st.none() | numbers,
     tuple[float, float]: st.tuples(numbers, numbers),
     dict[str, float]: st.dictionaries(st.text(), numbers, max_size=3),
+    Point: st.tuples(numbers, numbers, numbers),
     EndCause: st.sampled_from(EndCause),
     EndCause | None: st.none() | st.sampled_from(EndCause),
 }
@@ -54,6 +56,8 @@ def made(struct):
 def value(kind):
     if kind in FIELD_KINDS:
         return FIELD_KINDS[kind]
+    if kind == tuple[GaitPhase, ...]:
+        return st.lists(made(GaitPhase), max_size=3).map(tuple)
     if kind == CostTerms | None:
         return st.none() | made(CostTerms)
     return made(PhaseFlags) if kind is PhaseFlags else counts

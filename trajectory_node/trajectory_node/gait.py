@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from biped_description.settings import RobotSettings
+from msgs_json.walk_plan import GaitPhase
 from trajectory_node.settings import LONGEST_LOOK_AHEAD_TICKS, GaitSettings
 
 
@@ -39,6 +40,22 @@ class GaitPlan:
     """(rows,)"""
     step_index: NDArray[np.int64]
     """(rows,) single supports begun so far."""
+
+    def phases(self) -> tuple[GaitPhase, ...]:
+        """Return the stretches of the walk in which the planned support is the same."""
+        flags = np.column_stack(
+            (self.right_support, self.double_support, self.step_index)
+        )
+        changed = (flags[1:] != flags[:-1]).any(axis=1)
+        return tuple(
+            GaitPhase(
+                from_tick=int(tick),
+                right_support=bool(self.right_support[tick]),
+                double_support=bool(self.double_support[tick]),
+                step_index=int(self.step_index[tick]),
+            )
+            for tick in (0, *(np.flatnonzero(changed) + 1))
+        )
 
 
 def quintic(s: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from biped_common.timing import TICKS_PER_LEARNING_TICK
 from biped_description.robot import Robot
-from msgs_json.segment import WaistSegment
+from msgs_json.segment import WaistSegment, segment_ticks
+from msgs_json.walk_plan import WalkPlan
 from trajectory_node.bspline import CorrectionSpline
 from trajectory_node.errors import TrajectoryError
 from trajectory_node.gait import plan_gait
@@ -81,6 +82,18 @@ class WaistReference:
             step_index=plan.step_index[:1],
         )
 
+    def walk_plan(self) -> WalkPlan:
+        """Return what is known of every walk before it begins."""
+        plan = self.plan
+        return WalkPlan(
+            walk_ticks=plan.ticks,
+            waist_m=tuple(self.static_waist[0].tolist()),
+            left_foot_m=tuple(plan.left_foot[0].tolist()),
+            right_foot_m=tuple(plan.right_foot[0].tolist()),
+            zmp_m=tuple(plan.zmp_reference[0].tolist()),
+            phases=plan.phases(),
+        )
+
     def reset(self) -> None:
         """Go back to the start of the walk, without any correction."""
         self._tick = 0
@@ -108,7 +121,7 @@ class WaistReference:
         rows = slice(first, first + self.rows)
         waist = self.static_waist[rows].copy()
         waist[:, :2] += self._spline.push(action_m)
-        n_ticks = min(TICKS_PER_LEARNING_TICK, self.plan.ticks - first)
+        n_ticks = segment_ticks(first, self.plan.ticks)
         self._tick += n_ticks
         plan = self.plan
         return WaistSegment(

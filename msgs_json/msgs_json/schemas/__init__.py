@@ -19,12 +19,14 @@ import msgspec
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.walk_plan import WalkPlan
 
 PAYLOADS: tuple[type[msgspec.Struct], ...] = (
     PhaseFlags,
     Observation,
     EpisodeResult,
     LearnerStatus,
+    WalkPlan,
 )
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

@@ -28,7 +28,7 @@ class RecordedRun:
         self._states = joint_state_template(JOINT_NAMES, with_effort=True)
         self._references = joint_state_template(JOINT_NAMES, with_effort=False)
         self._point = point_template()
-        self._correction = correction_template(LEARNER)
+        self._correction = correction_template()
         rng = np.random.default_rng(robot_stream(seed))
         self._walker = Walker(settings, rng, self._on_tick)
         self.session = self.new_session()

@@ -3,7 +3,7 @@
 import msgspec
 import numpy as np
 import pytest
-from tests.biped_bag.verification.recorded_run import LEARNER, RecordedRun
+from tests.biped_bag.verification.recorded_run import RecordedRun
 
 from biped_bag.verification.cost import FROM_OBSERVATIONS, FROM_TOPICS
 from biped_bag.verification.report import Verdict
@@ -14,6 +14,7 @@ from biped_ros.messages import correction_of, correction_template
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
+from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
 from msgs_json.wire import MalformedMessageError, decode, encode
 
@@ -47,10 +48,10 @@ def from_walk(messages, number):
     raise AssertionError(f"no walk {number}")
 
 
-def change_correction(messages, place, change, learner=LEARNER):
+def change_correction(messages, place, change):
     """Replace a correction."""
     _, clock_ticks, value_m = correction_of(messages[place][1])
-    message = correction_template(learner).fill(change(value_m), clock_ticks)
+    message = correction_template().fill(change(value_m), clock_ticks)
     messages[place] = (topics.CORRECTION.name, message)
 
 
@@ -116,7 +117,7 @@ def test_a_missing_correction_is_found(run, messages):
 def test_a_correction_that_nobody_asked_for_is_found(run, messages):
     place = places(messages, topics.CORRECTION)[200]
     _, clock_ticks, value_m = correction_of(messages[place][1])
-    extra = correction_template(LEARNER).fill(value_m, clock_ticks + 1)
+    extra = correction_template().fill(value_m, clock_ticks + 1)
     messages.insert(place, (topics.CORRECTION.name, extra))
     assert verify(run.new_session(), messages).differences == 1
 
@@ -183,10 +184,10 @@ def test_a_walk_that_was_only_offered_lacks_nothing(run, messages):
 
 
 def test_a_learner_that_was_started_again_is_not_followed(run, messages):
-    half = len(messages) // 2
-    for place in places(messages, topics.CORRECTION):
-        if place > half:
-            change_correction(messages, place, lambda value_m: value_m, "learner-2")
+    place = places(messages, topics.LEARNER_STATUS)[2]
+    status = decode(LearnerStatus, string_text(messages[place][1]))
+    again = msgspec.structs.replace(status, instance="learner-2")
+    messages[place] = (topics.LEARNER_STATUS.name, string_message(encode(again)))
     found = verify(run.new_session(), messages)
     assert "started again" in found.walks[-1].not_checked
     assert found.verdict is Verdict.NOT_VERIFIED

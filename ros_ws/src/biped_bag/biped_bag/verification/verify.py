@@ -92,9 +92,8 @@ class _Replay:
 
     def _not_followed(self, walk: RecordedWalk) -> str | None:
         """Return what the recorded learner knew and the session does not, if any."""
-        learners = {correction.learner for correction in walk.corrections.values()}
-        known, self._learner = self._learner, min(learners, default=self._learner)
-        if known is not None and learners - {known}:
+        known, self._learner = self._learner, min(walk.learners, default=self._learner)
+        if len(walk.learners | {known or self._learner}) > 1:
             return _not_in_the_bag(
                 f"the memory from which the learner went on, when it was started again "
                 f"in walk {walk.number},"
@@ -147,10 +146,10 @@ class _Replay:
                 # The recording may have ended between the two.
                 if not (last and observation is walk.observations[-1]):
                     check.differ(observation, _CORRECTION, None, answer.tolist())
-            elif recorded.value_m.tobytes() == answer.tobytes():
+            elif recorded.tobytes() == answer.tobytes():
                 check.identical += 1
             else:
-                both = recorded.value_m.tolist(), answer.tolist()
+                both = recorded.tolist(), answer.tolist()
                 check.differ(observation, _CORRECTION, *both)
         if result is None and (walk.result is not None or not last):
             self._stop_at_hole(walk, check, previous)
@@ -160,7 +159,7 @@ class _Replay:
             )
         for clock_ticks in sorted(expected):
             since = clock_ticks - previous.clock_ticks
-            value_m = expected[clock_ticks].value_m.tolist()
+            value_m = expected[clock_ticks].tolist()
             check.differ(previous, _CORRECTION, value_m, None, since)
 
     def _stop_at_hole(

@@ -43,15 +43,6 @@ WANTED = (
 """All topics that `recorded_walks` uses."""
 
 
-class Correction(NamedTuple):
-    """What a learner answered."""
-
-    learner: str
-    """Name of the running learner."""
-    value_m: NDArray[np.float64]
-    """(2,) dx and dy."""
-
-
 class Samples(NamedTuple):
     """The messages of a 500 Hz topic within a walk, by control tick."""
 
@@ -71,8 +62,10 @@ class RecordedWalk:
     result: EpisodeResult | None = None
     status: LearnerStatus | None = None
     """What the learner had last said of itself when the walk began."""
-    corrections: dict[int, Correction] = field(default_factory=dict)
-    """By clock tick."""
+    learners: set[str] = field(default_factory=set)
+    """Names of those that took part."""
+    corrections: dict[int, NDArray[np.float64]] = field(default_factory=dict)
+    """(2,) dx and dy [m], by clock tick."""
     samples: dict[str, Samples] = field(default_factory=dict)
     """By topic of MEASURED."""
 
@@ -108,7 +101,7 @@ class _Gathering:
         self._walks: list[RecordedWalk] = []
         self._count = 0
         self._status: LearnerStatus | None = None
-        self._corrections: dict[int, Correction] = {}
+        self._corrections: dict[int, NDArray[np.float64]] = {}
         self._samples: dict[str, dict[int, NDArray[np.float64]]] = {
             topic: {} for topic in MEASURED
         }
@@ -135,12 +128,13 @@ class _Gathering:
         elif topic == topics.OBSERVATION.name:
             yield from self._observe(decode(Observation, string_text(message)))
         elif topic == topics.CORRECTION.name:
-            learner, clock_ticks, value_m = correction_of(message)
-            self._corrections[clock_ticks] = Correction(learner, value_m)
+            _, clock_ticks, value_m = correction_of(message)
+            self._corrections[clock_ticks] = value_m
         elif topic == topics.EPISODE.name:
             yield from self._end(decode(EpisodeResult, string_text(message)))
         elif topic == topics.LEARNER_STATUS.name:
             self._status = decode(LearnerStatus, string_text(message))
+            self._take_part(self._status)
 
     def rest(self) -> Iterator[RecordedWalk]:
         """Yield the walks that nothing more will come for."""
@@ -161,7 +155,12 @@ class _Gathering:
         if last is None or observation.episode != last.episode:
             self._count += 1
             self._walks.append(RecordedWalk(self._count, [], status=self._status))
+            self._take_part(self._status)
         self._walks[-1].observations.append(observation)
+
+    def _take_part(self, status: LearnerStatus | None) -> None:
+        if self._walks and status is not None and status.active:
+            self._walks[-1].learners.add(status.instance)
 
     def _end(self, result: EpisodeResult) -> Iterator[RecordedWalk]:
         for walk in self._walks:
