@@ -28,9 +28,18 @@ def test_it_is_described(bag, capsys):
     assert "/biped/stance" in capsys.readouterr().out
 
 
-def test_it_is_exported(bag, tmp_path):
-    assert main(["bag", "export", str(bag), str(tmp_path / "tables")]) == 0
-    assert any((tmp_path / "tables").iterdir())
+def test_payloads_that_are_as_they_were_are_exported(bag, tmp_path):
+    tables = tmp_path / "tables"
+    topics = ("--topics", "/biped/observation", "/biped/correction")
+    assert main(["bag", "export", str(bag), str(tables), *topics]) == 0
+    assert any(tables.iterdir())
+
+
+def test_a_payload_of_another_version_is_named(bag, tmp_path, capsys):
+    assert main(["bag", "export", str(bag), str(tmp_path / "tables")]) == 2
+    complaint = capsys.readouterr().err
+    assert "/biped/learner: the message logged at" in complaint
+    assert "`$.version`" in complaint
 
 
 def test_a_learner_of_another_version_is_not_pretended_to_be_the_same(bag, capsys):
