@@ -116,7 +116,7 @@ class SimNodeSettings:
 
     robot: RobotSettings = section(RobotSettings)
     sim: SimSettings = section(SimSettings)
-    seed: int = setting(0, "", "of the disturbances", lower=0)
+    seed: int = setting(0, "", "of the disturbances", lower=0, upper=2**63 - 1)
     pace: str = setting(
         "lockstep",
         "",
