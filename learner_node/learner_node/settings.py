@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import check_ranges, section, setting
+from biped_common.settings import Settings, section, setting
 from learner_node.walking.settings import LearnerSettings
 
 
 @dataclass(frozen=True)
-class LearnerNodeSettings:
+class LearnerNodeSettings(Settings):
     """The learner, its seed, and where it is kept."""
 
     learner: LearnerSettings = section(LearnerSettings)
@@ -31,7 +31,3 @@ class LearnerNodeSettings:
     run_settings: str = setting(
         "{}", "", "JSON, sections of the run's settings beside learner, kept with it"
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from biped_common.settings import check_ranges, section, setting
+from biped_common.settings import Settings, section, setting
 
 
 @dataclass(frozen=True)
-class LimitSettings:
+class LimitSettings(Settings):
     """What ends a walk."""
 
     zmp_error_m: float = setting(
@@ -28,13 +28,9 @@ class LimitSettings:
         0.01, "m", "a sole this deep in the floor is a fault of the physics", above=0.0
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class DisturbanceSettings:
+class DisturbanceSettings(Settings):
     """Differences between the robot as planned and the robot as it is.
 
     Random ones are drawn anew for every walk from the generator given to the robot.
@@ -68,13 +64,9 @@ class DisturbanceSettings:
         upper=1.0,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class SimSettings:
+class SimSettings(Settings):
     """The simulated robot."""
 
     limits: LimitSettings = section(LimitSettings)
@@ -82,7 +74,7 @@ class SimSettings:
 
 
 @dataclass(frozen=True)
-class SimNodeSettings:
+class SimNodeSettings(Settings):
     """All of the simulation node."""
 
     sim: SimSettings = section(SimSettings)
@@ -131,7 +123,3 @@ class SimNodeSettings:
         lower=0,
         upper=10,
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
 from learner_node.xol.settings import XolSettings
 
 INPUT_NAMES = (
@@ -22,7 +22,7 @@ N_CONTINUOUS = len(INPUT_NAMES) - N_DISCRETE
 
 
 @dataclass(frozen=True)
-class ActionSettings:
+class ActionSettings(Settings):
     """The corrections to choose from (Section 4.2)."""
 
     limit_m: float = setting(
@@ -43,13 +43,9 @@ class ActionSettings:
         upper=50,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class InputSettings:
+class InputSettings(Settings):
     """Widths of the basis functions, which scale the continuous inputs (4.1)."""
 
     waist_radius_m: float = setting(0.03, "m", "waist position", above=0.0)
@@ -57,10 +53,6 @@ class InputSettings:
     acceleration_radius_m_s2: float = setting(
         0.9, "m/s^2", "waist acceleration", above=0.0
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
 
     @property
     def radii(self) -> tuple[float, ...]:
@@ -73,7 +65,7 @@ class InputSettings:
 
 
 @dataclass(frozen=True)
-class CostSettings:
+class CostSettings(Settings):
     """T_err (eq. (2)) and its running estimate (eqs. (3), (4))."""
 
     zmp_limit_m: float = setting(0.065, "m", "zmpLimit of eq. (2)", above=0.0)
@@ -96,26 +88,18 @@ class CostSettings:
         upper=1.0,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class RewardSettings:
+class RewardSettings(Settings):
     """Rewards (Table 2) and penalties (Table 1)."""
 
     success: float = setting(10_000.0, "", "RWDforSuc", above=0.0)
     goal: float = setting(10.0, "", "RWDforGD", lower=0.0)
     penalty: float = setting(10.0, "", "pnlty of every type of penalty", above=0.0)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class ScheduleSettings:
+class ScheduleSettings(Settings):
     """The learning schedule (Section 5.1)."""
 
     successes_per_subtask: int = setting(
@@ -128,13 +112,9 @@ class ScheduleSettings:
         0.9375, "s", "how much later the next subtask ends (T_step / 2)", lower=0.02
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class LearnerSettings:
+class LearnerSettings(Settings):
     """All of the learner of the walking task."""
 
     xol: XolSettings = section(XolSettings)
@@ -144,7 +124,7 @@ class LearnerSettings:
     rewards: RewardSettings = section(RewardSettings)
     schedule: ScheduleSettings = section(ScheduleSettings)
 
-    def __post_init__(self) -> None:
+    def check_together(self) -> None:
         """Refuse radii in two places: they are set in `inputs`, by name and unit."""
         if self.xol.states.radii:
             raise SettingsError(

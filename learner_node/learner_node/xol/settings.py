@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
 
 
 @dataclass(frozen=True)
-class StateSettings:
+class StateSettings(Settings):
     """How continuous inputs become discrete states (Section 2, [12, 18])."""
 
     basis: str = setting(
@@ -32,13 +32,9 @@ class StateSettings:
         100, "episodes", "an unrewarded state unvisited this long is forgotten", lower=1
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class FixedModeSettings:
+class FixedModeSettings(Settings):
     """When a state becomes fixed, and when it is released (Section 3.3)."""
 
     strategy: str = setting(
@@ -75,13 +71,9 @@ class FixedModeSettings:
         choices=("last_decisions", "nearest"),
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class XolSettings:
+class XolSettings(Settings):
     """Constants of online profit sharing with penalty avoidance (Section 3)."""
 
     discount: float = setting(
@@ -128,9 +120,8 @@ class XolSettings:
     states: StateSettings = section(StateSettings)
     fixed_mode: FixedModeSettings = section(FixedModeSettings)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
+    def check_together(self) -> None:
+        """Refuse values at odds with one another."""
         if self.failure_reach > self.queue_length:
             raise SettingsError(
                 "failure_reach",
