@@ -11,13 +11,12 @@ import statistics
 import time
 
 import numpy as np
-import pybullet
 
 from benchmarks.report import Figure
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import Walker
 from biped_common.settings import from_mapping
-from learner_node.walking.frozen import static_walk
+from learner_node.walking.walks import static_walk
 from sim_node.control_tick import ControlTick
 
 _TURNS = 7
@@ -73,6 +72,6 @@ def _bare_tick_s(
     for q, dq in commands:
         world.command(q, dq)
         start = time.perf_counter()
-        pybullet.stepSimulation(physicsClientId=world.client)
+        world.step()
         spent += time.perf_counter() - start
     return spent / len(commands)

@@ -12,8 +12,10 @@ import time
 import numpy as np
 
 from benchmarks.report import Figure
-from learner_node.walking.learner import WalkLearner
+from learner_node.methods import make_learner
 from learner_node.walking.settings import LearnerSettings
+from learner_node.walking.task import WalkTask
+from learner_node.walking.walks import LearningWalk
 from msgs_json.observation import Observation, PhaseFlags
 
 _BOUNDS_US = {300: 20.0, 20_000: 60.0}
@@ -26,30 +28,33 @@ def measure() -> list[Figure]:
     """Return microseconds per tick at two sizes of memory, and bytes per state."""
     figures = []
     for n_states, bound_us in _BOUNDS_US.items():
-        learner = WalkLearner(LearnerSettings(), _WALK_TICKS, np.random.default_rng(0))
+        task = WalkTask(LearnerSettings(), _WALK_TICKS)
+        learner = make_learner(task.settings, task.problem, np.random.default_rng(0))
+        walk = LearningWalk(task, learner)
         rng = np.random.default_rng(1)
         # Spread far beyond the basis functions' widths, so that each makes a state.
         observations = [_observation(rng, tick=10 + i) for i in range(n_states)]
-        learner.respond(_observation(rng, tick=0))
+        walk.respond(_observation(rng, tick=0))
         for observation in observations:
-            learner.respond(observation)
+            walk.respond(observation)
         visits = rng.integers(0, n_states, _TICKS)
         times = []
         for _ in range(_TURNS):
             start = time.perf_counter()
             for i in visits:
-                learner.respond(observations[i])
+                walk.respond(observations[i])
             times.append((time.perf_counter() - start) / _TICKS)
         figures.append(
             Figure(
-                f"learner per 20 ms tick, {learner.agent.basis_states} states",
+                f"learner per 20 ms tick, {learner.figures()['basis_states']:g} states",
                 1e6 * statistics.median(times),
                 "us",
                 bound_us,
             )
         )
-    agent = learner.agent
-    figures.append(Figure("memory per basis state", agent.bytes_per_state(), "bytes"))
+    memory = learner.memory()
+    size = sum(array.nbytes for array in memory.values()) / len(memory["state_life"])
+    figures.append(Figure("memory file per basis state", size, "bytes"))
     return figures
 
 

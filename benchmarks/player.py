@@ -78,30 +78,23 @@ def _write_walk(folder: Path) -> None:
 
     Each message of these is written four times, 2 ms apart.
     """
-    from biped_bag.reader import BagReader, offered_qos
-    from biped_bag.writer import BagWriter, RecordedMessage
+    from biped_bag.storage.contents import BagMessage
+    from biped_bag.storage.reader import BagReader
+    from biped_bag.storage.writer import BagWriter
 
     sample = BagReader(_SAMPLE)
     writer = BagWriter(folder)
     for topic in sample.topics.values():
-        writer.add_topic(
-            topic.name,
-            topic.type_name,
-            offered_qos(topic.qos),
-            type_hash=topic.type_hash,
-            latched=topic.latched,
-        )
-    begin_ns = next(iter(sample.messages(["/clock"]))).log_time_ns
+        writer.add_topic(topic)
+    begin_ns = next(iter(sample.messages(["/clock"]))).log_ns
     messages = []
     for message in sample.messages():
-        at_ns = max(begin_ns, message.log_time_ns)
-        if at_ns > message.log_time_ns and not sample.topics[message.topic].latched:
+        at_ns = max(begin_ns, message.log_ns)
+        if at_ns > message.log_ns and not sample.topics[message.topic].latched:
             continue
         for copy in range(_COPIES if message.topic in _THINNED else 1):
             copy_ns = at_ns + copy * _CONTROL_TICK_NS
-            messages.append(
-                RecordedMessage(message.topic, message.data, copy_ns, copy_ns, 0)
-            )
+            messages.append(BagMessage(message.topic, message.data, copy_ns, copy_ns))
     for ordered in sorted(messages, key=lambda message: message.log_ns):
         writer.write(ordered)
     writer.close()
@@ -114,8 +107,8 @@ def _played(
 
     The CPU time is that of this process while it plays, with its middleware's threads.
     """
-    from biped_bag.playback import PlayRequest, play
-    from biped_bag.reader import BagReader
+    from biped_bag.player.play import PlayRequest, play
+    from biped_bag.storage.reader import BagReader
 
     bag = BagReader(folder)
     topics = [(topic.name, topic.type_name) for topic in bag.topics.values()]

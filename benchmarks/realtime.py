@@ -15,14 +15,16 @@ from numpy.typing import NDArray
 
 from benchmarks.graph_run import Listener, run_graph
 from benchmarks.report import Figure
-from biped_bringup.node_parameters import LOOK_AHEAD_TICKS, node_parameters
+from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.supervisor.supervisor import Supervisor
 from biped_bringup.training import TrainingRun
+from biped_description.robot import Robot
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.pilot import Pilot
 from sim_node.realtime import Punctuality, RealtimeLoop
+from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
 
 _RATE_HZ = 500.0
@@ -95,7 +97,10 @@ class _DirectAnswer:
     def __init__(self, run: TrainingRun) -> None:
         settings = run.settings
         self.reference = WaistReference(
-            settings.gait, settings.correction, LOOK_AHEAD_TICKS
+            Robot(settings.robot),
+            settings.gait,
+            settings.correction,
+            TrajectorySettings.look_ahead_ticks,
         )
         self.punctuality = Punctuality()
         self.pilot = Pilot(run.walker.biped)

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.numbered_publisher import TOPICS, sent_times
-from biped_bag.reader import BagReader
-from biped_bag.recover import recover
+from biped_bag.recovery.recover import recover
+from biped_bag.storage.reader import BagReader
 from biped_ros.environment import node_environment, private_domain
 
 BOUND_S = 0.2

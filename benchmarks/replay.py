@@ -108,7 +108,7 @@ def learned_twice(
                 raise RuntimeError(f"seed {seed}: not the same with replay")
             if computed.tally.schedule_episodes is not None:
                 break
-        if computed.learner.memory_sha256() != replayed.learner.memory_sha256():
+        if computed.session.memory_sha256() != replayed.session.memory_sha256():
             raise RuntimeError(f"seed {seed}: another memory with replay")
         return Pair(
             seed,

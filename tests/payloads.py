@@ -4,6 +4,7 @@ from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms, EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.walk_plan import GaitPhase, WalkPlan
 
 PHASE = PhaseFlags(
     planned_right_support=True,
@@ -63,9 +64,7 @@ STATUS = LearnerStatus(
     successes=3,
     episodes=40,
     survival=0.7,
-    basis_states=900,
-    fixed_states=12,
-    penalty_states=80,
+    figures={"basis_states": 900, "fixed_states": 12, "penalty_states": 80},
     t_err_estimate=2.1,
     schedule_complete=False,
     learned=False,
@@ -73,4 +72,20 @@ STATUS = LearnerStatus(
     simulated_s=63.2,
     memory_sha256="0a",
     trajectory_sha256="6f1c",
+)
+PLAN = WalkPlan(
+    walk_ticks=5625,
+    waist_m=(0.0, 0.0, 0.475),
+    left_foot_m=(0.0, 0.09, 0.0),
+    right_foot_m=(0.0, -0.09, 0.0),
+    zmp_m=(0.02, 0.0),
+    phases=(
+        GaitPhase(from_tick=0, right_support=False, double_support=True, step_index=0),
+        GaitPhase(
+            from_tick=625, right_support=False, double_support=False, step_index=1
+        ),
+        GaitPhase(
+            from_tick=1038, right_support=True, double_support=True, step_index=1
+        ),
+    ),
 )

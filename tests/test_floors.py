@@ -62,6 +62,7 @@ def test_the_packages_keep_the_floors() -> None:
         ("biped_bringup/a.py", "biped_lab"),
         ("learner_node/a.py", "pybullet"),
         ("biped_lab/a.py", "pybullet"),
+        ("sim_node/a.py", "pybullet"),
         ("sim_node/a.py", "rclpy"),
         ("sim_node/a.py", "rclpy.node"),
     ],
@@ -78,7 +79,7 @@ def test_a_forbidden_import_is_refused(house: Path, module: str, imported: str) 
     [
         ("biped_lab/a.py", "msgs_json"),
         ("biped_bringup/a.py", "sim_node"),
-        ("sim_node/a.py", "pybullet"),
+        ("sim_node/pybullet_world.py", "pybullet"),
         ("sim_node/node.py", "rclpy"),
         ("sim_node/node.py", "rclpy.node"),
         ("biped_ros/a.py", "rclpy"),

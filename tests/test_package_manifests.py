@@ -148,12 +148,31 @@ def test_pip_and_colcon_offer_the_same_executables_and_verbs() -> None:
     assert by_colcon == project()["entry-points"]
 
 
+def offered(*beginnings: str) -> list[EntryPoint]:
+    """Return the entry points of the groups whose names begin so."""
+    return [
+        EntryPoint(name, target, group)
+        for group, points in project()["entry-points"].items()
+        if group.startswith(beginnings)
+        for name, target in points.items()
+    ]
+
+
 @pytest.mark.parametrize(
-    "group", [g for g in project()["entry-points"] if "verbs" in g]
+    "point", offered("biped.verbs", "biped.bag_verbs"), ids=lambda p: p.value
 )
-def test_a_verb_is_offered_by_the_package_that_holds_it(group: str) -> None:
-    for name, target in project()["entry-points"][group].items():
-        assert callable(EntryPoint(name, target, group=group).load())
+def test_a_verb_of_biped_is_a_function(point: EntryPoint) -> None:
+    assert callable(point.load())
+
+
+@pytest.mark.parametrize("point", offered("ros2."), ids=lambda p: p.value)
+def test_a_verb_of_ros2_is_a_module_with_a_line_of_help(point: EntryPoint) -> None:
+    module = point.load()
+    assert module.__doc__.partition("\n")[0].endswith(".")
+    has_verbs = f"ros2.{point.name}_verbs" in project()["entry-points"]
+    if point.group != "ros2.commands" or not has_verbs:
+        assert callable(module.add_arguments)
+        assert callable(module.main)
 
 
 @pytest.mark.parametrize("name", executables())

@@ -12,6 +12,7 @@ from biped_common.settings import to_mapping
 TOP = Path(__file__).resolve().parents[1]
 MAP = TOP / "docs" / "paper-map.md"
 FOLDERS = {
+    "learner_node": TOP / "learner_node/learner_node",
     "xol": TOP / "learner_node/learner_node/xol",
     "walking": TOP / "learner_node/learner_node/walking",
     "sim": TOP / "sim_node/sim_node",

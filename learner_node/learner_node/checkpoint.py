@@ -18,10 +18,10 @@ import numpy as np
 
 from biped_common.atomic_file import atomic_file
 from biped_common.errors import BipedError
-from learner_node.memory_hash import Arrays, arrays_sha256
+from learner_node.memory import Arrays, arrays_sha256
 
 FORMAT = "biped checkpoint"
-VERSION = 1
+VERSION = 2
 _HEADER = "header"
 # All that reading a damaged zip has been seen to raise.
 _DAMAGE = (

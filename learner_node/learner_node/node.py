@@ -8,7 +8,6 @@ What failures do:
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import time
@@ -20,6 +19,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.publisher import Publisher
 from std_srvs.srv import SetBool, Trigger
 
+from biped_common.settings import from_json, to_mapping
 from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import correction_template
@@ -50,11 +50,17 @@ class LearnerNode(GuardedNode):
             options: of `rclpy.node.Node`, such as `parameter_overrides`.
 
         Raises:
+            SettingsError: a parameter is wrong.
             CheckpointError: the file is there, but cannot be used.
         """
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(LearnerNodeSettings, self._on_settings)
         self._settings = settings
+        # Who walks with the memory needs to know the gait, too; the learner does not.
+        self._run_settings = {
+            **from_json("run_settings", settings.run_settings, dict[str, Any]),
+            "learner": to_mapping(settings.learner),
+        }
         # Names sort by the time of the start: of two learners, the first stays.
         self.instance = f"learner-{time.time_ns()}-{process_name()}"
         self.session = LearningSession(
@@ -75,7 +81,7 @@ class LearnerNode(GuardedNode):
         self._saved_episodes: int | None = None
         self._gaps = ObservationGaps()
         self._seen = ("", -1)
-        self._template = correction_template(self.instance)
+        self._template = correction_template()
         self._corrections: Publisher | None = None
         self._episodes = self.publisher(topics.EPISODE)
         self._status = self.publisher(topics.LEARNER_STATUS)
@@ -117,8 +123,7 @@ class LearnerNode(GuardedNode):
         """Write the checkpoint, if one is kept; return why it could not be written."""
         if self._file is None or self._settings.frozen:
             return None
-        run_settings = json.loads(self._settings.run_settings)
-        header = {"settings": run_settings, **self.session.header()}
+        header = {"settings": self._run_settings, **self.session.header()}
         try:
             write_checkpoint(self._file, header, self.session.arrays())
         except OSError as error:
@@ -232,7 +237,7 @@ class LearnerNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(LearnerNode, wrong_input=(CheckpointError,))
+    return run_node(LearnerNode)
 
 
 if __name__ == "__main__":

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import check_ranges, section, setting
+from biped_common.settings import Settings, section, setting
 from learner_node.walking.settings import LearnerSettings
 
 
 @dataclass(frozen=True)
-class LearnerNodeSettings:
+class LearnerNodeSettings(Settings):
     """The learner, its seed, and where it is kept."""
 
     learner: LearnerSettings = section(LearnerSettings)
-    seed: int = setting(0, "", "of every random choice", lower=0)
+    seed: int = setting(0, "", "of every random choice", lower=0, upper=2**63 - 1)
     walk_ticks: int = setting(
         5625, "control ticks", "the whole walk, the last target", lower=1
     )
@@ -28,8 +28,6 @@ class LearnerNodeSettings:
     checkpoint_every_episodes: int = setting(
         10, "episodes", "learning episodes between saves", lower=1, live=True
     )
-    run_settings: str = setting("{}", "", "settings of the whole run, kept with it")
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
+    run_settings: str = setting(
+        "{}", "", "JSON, sections of the run's settings beside learner, kept with it"
+    )

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_common.timing import TICKS_PER_LEARNING_TICK
+
 
 @dataclass(frozen=True)
 class WaistSegment:
@@ -32,3 +34,11 @@ class WaistSegment:
     """(rows,)"""
     step_index: NDArray[np.int64]
     """(rows,) single supports begun so far."""
+
+
+def segment_ticks(first_tick: int, walk_ticks: int) -> int:
+    """Return the control ticks from a segment's start to the next observation.
+
+    A learning tick, but for the last segment of a walk, which can be shorter.
+    """
+    return min(TICKS_PER_LEARNING_TICK, walk_ticks - first_tick)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 SIM_NODE = "sim_node"
 TRAJECTORY_NODE = "trajectory_node"
 LEARNER_NODE = "learner_node"
+RECORDER_NODE = "recorder_node"
 
 
 @dataclass(frozen=True)
@@ -58,20 +59,22 @@ CORRECTION = Topic(
     "/biped/correction",
     "geometry_msgs/msg/Vector3Stamped",
     depth=100,
-    meaning="waist correction (dx, dy) [m], stamped as the observation it answers",
+    meaning="waist correction (dx, dy), world frame [m], stamped as the observation "
+    "it answers",
 )
 WAIST_REFERENCE = Topic(
     "/biped/waist_reference",
     "trajectory_msgs/msg/MultiDOFJointTrajectory",
     depth=100,
-    meaning="waist, feet, ZMP reference [m, world] and phase per control tick",
+    meaning="waist, feet and reference ZMP per control tick, world frame [m], stamped "
+    "as the observation from which on they hold",
 )
-STANCE = Topic(
-    "/biped/stance",
-    "trajectory_msgs/msg/MultiDOFJointTrajectory",
+PLAN = Topic(
+    "/biped/plan",
+    "std_msgs/msg/String",
     depth=1,
     latched=True,
-    meaning="the pose in which walks start, a waist reference of one control tick",
+    meaning="WalkPlan, JSON",
 )
 EPISODE = Topic(
     "/biped/episode", "std_msgs/msg/String", depth=100, meaning="EpisodeResult, JSON"

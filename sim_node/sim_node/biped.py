@@ -16,27 +16,28 @@ from typing import Any
 import numpy as np
 
 from biped_common.timing import seconds
-from biped_description import kinematics
-from biped_description.joints import TORQUE_LIMIT
+from biped_description import kernels
+from biped_description.links import LINK_NAMES
+from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
-from sim_node.contact import NO_CONTACT, FloorContact, floor_contact
+from sim_node.contact import NO_CONTACT, FloorContact
 from sim_node.control_tick import ControlTick, phase_flags
 from sim_node.disturbance import Disturbance, draw_disturbance
-from sim_node.errors import SnapshotError
+from sim_node.engines import plant_of
+from sim_node.errors import SnapshotError, WorldClosedError
 from sim_node.joint_references import JointReferences, PlannedPhase, solve, standing
 from sim_node.limit_watch import LimitCounts, LimitWatch
 from sim_node.settings import SimSettings
 from sim_node.tick_sums import sum_up
-from sim_node.world import World
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
 _NO_NOISE = [[0.0, 0.0]] * 3
 _IK_END_CAUSE = {
-    kinematics.UNREACHABLE: EndCause.IK_UNREACHABLE,
-    kinematics.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
+    kernels.UNREACHABLE: EndCause.IK_UNREACHABLE,
+    kernels.BEYOND_JOINT_LIMIT: EndCause.IK_JOINT_LIMIT,
 }
 
 
@@ -77,6 +78,7 @@ class SimulatedBiped:
 
     def __init__(
         self,
+        robot: Robot,
         settings: SimSettings,
         start: WaistSegment,
         rng: np.random.Generator,
@@ -86,6 +88,7 @@ class SimulatedBiped:
         """Build the world and let the robot settle in its starting pose.
 
         Args:
+            robot: that is simulated.
             settings: limits and disturbances.
             start: a segment whose row 0 is the pose in which walks start.
             rng: source of all disturbances; nothing is drawn where none is random.
@@ -93,16 +96,15 @@ class SimulatedBiped:
             name: of this simulation's run, for observations.
         """
         self._name = name
+        self.robot = robot
         self.settings = settings
         self.on_tick = on_tick
         self._rng = rng
         self._start = start
-        self.world = World()
-        self.world.set_friction(settings.disturbances.friction)
-        self.world.set_torque_limits(
-            TORQUE_LIMIT * settings.disturbances.torque_limit_factor
-        )
         sizes = settings.disturbances
+        torque_limits_nm = robot.torque_limit_nm * sizes.torque_limit_factor
+        self.world = plant_of(settings.engine)(robot, sizes.friction, torque_limits_nm)
+        self._open = True
         self._noise_sizes = np.array(
             [
                 [sizes.position_noise_m],
@@ -110,14 +112,18 @@ class SimulatedBiped:
                 [sizes.acceleration_noise_m_s2],
             ]
         )
-        self._limit_watch = LimitWatch(settings.limits, self.world.torque_limits)
+        self._limit_watch = LimitWatch(
+            settings.limits,
+            robot.settings.velocity_limit_rad_s,
+            torque_limits_nm.tolist(),
+        )
         self._references = standing(start)
         self._snapshots: set[BipedSnapshot] = set()
         # Measured since the last observation.
         self._ticks: list[ControlTick] = []
         self._disturbance = draw_disturbance(
             replace(settings.disturbances, push_force_n=0.0, mass_error=0.0),
-            self.world.n_links,
+            len(LINK_NAMES),
             np.random.default_rng(0),
         )
         self._watch = _Watch()
@@ -131,16 +137,16 @@ class SimulatedBiped:
 
         The clock goes on by one tick, so that no two observations share a time.
         """
-        self.world.check_open()
+        self._check_open()
         self.world.load(self._standing)
         disturbances = self.settings.disturbances
         if disturbances.random:
             self._disturbance = draw_disturbance(
-                disturbances, self.world.n_links, self._rng
+                disturbances, len(LINK_NAMES), self._rng
             )
         if disturbances.mass_error > 0.0:
             self.world.set_mass_factors(self._disturbance.mass_factors)
-        contact = floor_contact(self.world.contacts(), self.world.left_sole, (0.0, 0.0))
+        contact = self.world.contact(held=(0.0, 0.0))
         _, velocity = self.world.waist()
         self._watch = _Watch(
             episode=episode,
@@ -196,7 +202,7 @@ class SimulatedBiped:
             )
         if segment.n_ticks < 1:
             raise ValueError("segment without a tick")
-        references, status = solve(segment, rows)
+        references, status = solve(self.robot, segment, rows)
         if references.rows <= segment.n_ticks:
             watch.end_cause = _IK_END_CAUSE[status]
             return
@@ -220,7 +226,8 @@ class SimulatedBiped:
         references = self._references
         row = at - references.segment.first_tick
         dq_reference = references.dq[row]
-        self.world.step(references.q[row], dq_reference)
+        self.world.command(references.q[row], dq_reference)
+        self.world.step()
         tick = self._read(
             references.q[row + 1],
             dq_reference,
@@ -311,7 +318,7 @@ class SimulatedBiped:
 
     def snapshot(self) -> BipedSnapshot:
         """Keep the walk as it stands, so that `restore` continues it bit for bit."""
-        self.world.check_open()
+        self._check_open()
         snapshot = BipedSnapshot(
             world_state=self.world.save(),
             watch=self._watch.copy(),
@@ -349,13 +356,18 @@ class SimulatedBiped:
         self.world.release(snapshot.world_state)
 
     def close(self) -> None:
-        """End the world."""
+        """End the world; harmless when repeated."""
+        self._open = False
         self.world.close()
 
     # -- inner steps ---------------------------------------------------------------
 
+    def _check_open(self) -> None:
+        if not self._open:
+            raise WorldClosedError("this world has been closed")
+
     def _check_own(self, snapshot: BipedSnapshot) -> None:
-        self.world.check_open()
+        self._check_open()
         # The engine numbers states per world and uses numbers again.
         if snapshot not in self._snapshots:
             raise SnapshotError(
@@ -363,17 +375,18 @@ class SimulatedBiped:
             )
 
     def _check_walking(self) -> None:
-        self.world.check_open()
+        self._check_open()
         if self._watch.end_cause is not None:
             raise ValueError(f"the walk is over: {self._watch.end_cause}")
 
     def _settle(self) -> None:
         pose = (self._start.waist[:1], self._start.left_foot[:1], self._start.right_foot[:1])  # fmt: skip  # noqa: E501
-        q = kinematics.leg_joint_positions(*pose)[0]
+        q = self.robot.leg_joint_positions(*pose)[0]
         self.world.place(pose[0][0], q)
         still = [0.0] * len(q)
         for _ in range(_SETTLING_TICKS):
-            self.world.step(q.tolist(), still)
+            self.world.command(q.tolist(), still)
+            self.world.step()
 
     def _read(
         self,
@@ -386,10 +399,8 @@ class SimulatedBiped:
         watch = self._watch
         watch.clock_ticks += 1
         watch.control_tick += 1
-        position, velocity, torque = self.world.joint_states()
-        contact = floor_contact(
-            self.world.contacts(), self.world.left_sole, watch.contact[:2]
-        )
+        position, velocity, torque = self.world.joints()
+        contact = self.world.contact(watch.contact[:2])
         watch.contact = contact
         zmp_error_m = math.hypot(
             contact.zmp_x_m - zmp_reference[0], contact.zmp_y_m - zmp_reference[1]

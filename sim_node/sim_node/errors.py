@@ -9,6 +9,10 @@ class SimulationError(BipedError):
     """Base of this package's errors."""
 
 
+class EngineMissingError(SimulationError):
+    """A physics engine is not installed."""
+
+
 class WorldClosedError(SimulationError):
     """The world was used after it had been closed."""
 

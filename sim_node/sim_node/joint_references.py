@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from biped_common.timing import CONTROL_PERIOD_S
-from biped_description import kinematics
+from biped_description import kernels
 from biped_description.joints import JOINT_NAMES
+from biped_description.robot import Robot
 from msgs_json.segment import WaistSegment
 
 PlannedPhase = tuple[bool, bool, int]
@@ -39,32 +40,35 @@ def standing(start: WaistSegment) -> JointReferences:
     return JointReferences(start, rows=1, q=[], dq=[], zmp=zmp, phase=_phases(start, 1))
 
 
-def solve(segment: WaistSegment, rows: int) -> tuple[JointReferences, int]:
+def solve(
+    robot: Robot, segment: WaistSegment, rows: int
+) -> tuple[JointReferences, int]:
     """Return the references of a segment as far as the legs can follow it.
 
     Args:
+        robot: whose legs follow.
         segment: C-contiguous float64 arrays.
         rows: how many of its rows to use.
 
     Returns:
-        The references, and the status of `kinematics.solve_legs`.
+        The references, and the status of `Robot.solve_legs`.
 
     Raises:
         ValueError: a number of the segment is not finite.
     """
     q = np.empty((rows, len(JOINT_NAMES)))
-    status, row, _ = kinematics.solve_legs(
+    status, row, _ = robot.solve_legs(
         segment.waist[:rows], segment.left_foot[:rows], segment.right_foot[:rows], q
     )
     zmp = segment.zmp_reference[:rows]
-    if status == kinematics.NOT_FINITE:
+    if status == kernels.NOT_FINITE:
         raise ValueError(f"segment has a pose that is not finite, row {row}")
     # A sum is finite only if all of its terms are.
     if not math.isfinite(zmp.sum()):
         raise ValueError("segment has a ZMP reference that is not finite")
     references = JointReferences(
         segment,
-        rows=rows if status == kinematics.SOLVED else row,
+        rows=rows if status == kernels.SOLVED else row,
         q=q.tolist(),
         dq=((q[1:] - q[:-1]) / CONTROL_PERIOD_S).tolist(),
         zmp=zmp.tolist(),

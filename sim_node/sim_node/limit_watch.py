@@ -28,9 +28,15 @@ class LimitCounts:
 class LimitWatch:
     """Says why a walk must end, if it must."""
 
-    def __init__(self, limits: LimitSettings, torque_limits_nm: list[float]) -> None:
+    def __init__(
+        self,
+        limits: LimitSettings,
+        velocity_limit_rad_s: float,
+        torque_limits_nm: list[float],
+    ) -> None:
         """Take the limits; the torques are those that the servos can reach."""
         self._limits = limits
+        self._velocity_limit_rad_s = velocity_limit_rad_s
         self._unloaded_ticks = _ticks(limits.unloaded_feet_s)
         self._saturated_ticks = _ticks(limits.torque_saturation_s)
         self._torque_marks = [_SATURATED * limit for limit in torque_limits_nm]
@@ -70,8 +76,8 @@ class LimitWatch:
         if zmp_error_m >= limits.zmp_error_m:
             return EndCause.ZMP_ERROR
         if (
-            speed >= limits.joint_velocity_rad_s
-            and max(map(abs, velocity)) >= limits.joint_velocity_rad_s
+            speed >= self._velocity_limit_rad_s
+            and max(map(abs, velocity)) >= self._velocity_limit_rad_s
         ):
             return EndCause.JOINT_VELOCITY
         if counts.saturated >= self._saturated_ticks:

@@ -10,10 +10,9 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-import pybullet
 from visualization_msgs.msg import Marker
 
-from biped_description.dimensions import BIPED
+from biped_description.settings import RobotSettings
 from biped_ros.guarded import GuardedNode
 from biped_ros.markers import (
     CLEAR,
@@ -24,14 +23,15 @@ from biped_ros.markers import (
 from msgs_json import topics
 from msgs_json.segment import WaistSegment
 from sim_node.control_tick import ControlTick
-from sim_node.world import World
+from sim_node.physics import Physics
 
 Point = tuple[float, float]
 
 TORSO_FRAME = "torso"
 _WALKED_POINTS = 50
 """Of the waist's way so far, 2 s at 25 Hz."""
-_PLANNED_EVERY_ROWS = 5
+_PLANNED_POINTS = 13
+"""Of the waist's way ahead, evenly spaced over the segment."""
 _LINE_M = (0.004, 0.0, 0.0)
 _DOT_M = (0.016, 0.016, 0.016)
 _GREEN, _RED, _BLUE = (0.1, 0.7, 0.2, 1.0), (0.9, 0.1, 0.1, 1.0), (0.1, 0.3, 0.9, 1.0)
@@ -42,10 +42,11 @@ _PALE_BLUE, _ORANGE, _GREY = (
 )
 
 
-def support_polygon(feet: Sequence[Point]) -> list[Point]:
+def support_polygon(robot: RobotSettings, feet: Sequence[Point]) -> list[Point]:
     """Return the corners of the convex hull of soles, anticlockwise.
 
     Args:
+        robot: dimensions of its soles.
         feet: (x, y) of none, one or both feet, which point ahead, world frame [m].
 
     Returns:
@@ -53,11 +54,11 @@ def support_polygon(feet: Sequence[Point]) -> list[Point]:
     """
     if not feet:
         return []
-    half_x, half_y = BIPED.sole.length_x / 2, BIPED.sole.length_y / 2
+    half_x, half_y = robot.sole_length_m / 2, robot.sole_width_m / 2
     soles = [
         ((x - half_x, y - half_y), (x + half_x, y - half_y),
          (x + half_x, y + half_y), (x - half_x, y + half_y))
-        for x, y in sorted((x + BIPED.sole_ahead_of_ankle, y) for x, y in feet)
+        for x, y in sorted((x + robot.sole_ahead_of_ankle_m, y) for x, y in feet)
     ]  # fmt: skip
     if len(soles) == 1:
         return list(soles[0])
@@ -67,39 +68,30 @@ def support_polygon(feet: Sequence[Point]) -> list[Point]:
     return [rear[0], front[0], front[1], front[2], rear[2], rear[3]]
 
 
-def torso_pose(world: World) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the position [m] of the waist, the torso's frame, and its quaternion."""
-    _, orientation = pybullet.getBasePositionAndOrientation(
-        world.robot, physicsClientId=world.client
-    )
-    position, _ = world.waist()
-    return tuple(position), orientation
-
-
 class MarkerPublisher:
     """Publishes markers and torso pose at every n-th control tick of a walk."""
 
     def __init__(
-        self, node: GuardedNode, zmp_limit_m: float, segment_rows: int, every_ticks: int
+        self,
+        node: GuardedNode,
+        robot: RobotSettings,
+        zmp_limit_m: float,
+        every_ticks: int,
     ) -> None:
         """Make the publishers on a node.
 
         Args:
             node: that publishes.
+            robot: whose soles are drawn.
             zmp_limit_m: norm of the ZMP error that is a failure.
-            segment_rows: rows of every waist segment.
             every_ticks: control ticks between two messages; 0: never.
         """
         self.every_ticks = every_ticks
+        self._robot = robot
         self._markers = node.publisher(topics.MARKERS)
         self._torso = node.publisher(topics.TORSO_POSE)
-        self._planned_rows = np.r_[
-            0 : segment_rows - 1 : _PLANNED_EVERY_ROWS, segment_rows - 1
-        ]
         self._templates = {
-            corners: marker_array_template(
-                _forms(corners, zmp_limit_m, len(self._planned_rows))
-            )
+            corners: marker_array_template(_forms(corners, zmp_limit_m))
             for corners in (0, 4, 6)
         }
         self._clear = marker_array_template([CLEAR])
@@ -107,7 +99,7 @@ class MarkerPublisher:
         self._walked: deque[tuple[float, ...]] = deque(maxlen=_WALKED_POINTS)
         self._last_tick = 0
 
-    def publish(self, tick: ControlTick, segment: WaistSegment, world: World) -> None:
+    def publish(self, tick: ControlTick, segment: WaistSegment, world: Physics) -> None:
         """Publish what there is to see at a control tick, if it is its turn.
 
         Args:
@@ -118,7 +110,7 @@ class MarkerPublisher:
         at = tick.clock_ticks
         if self.every_ticks == 0 or at % self.every_ticks:
             return
-        position, orientation = torso_pose(world)
+        position, orientation = world.waist().position, world.torso_orientation()
         if not self._walked or tick.control_tick < self._last_tick:
             # Another walk: nothing of the last one stays in view.
             self._markers.publish(self._clear.fill((0.0,) * 3, at))
@@ -136,7 +128,8 @@ class MarkerPublisher:
             )
             if load > 0.0
         ]
-        corners = support_polygon(loaded)
+        corners = support_polygon(self._robot, loaded)
+        ahead = np.linspace(0, len(segment.waist) - 1, _PLANNED_POINTS, dtype=np.int64)
         origin = (0.0, 0.0, 0.0)
         reference = (*tick.zmp_reference, 0.0)
         values = np.concatenate(
@@ -146,14 +139,14 @@ class MarkerPublisher:
                 reference,
                 reference,
                 origin,
-                segment.waist[self._planned_rows].ravel(),
+                segment.waist[ahead].ravel(),
                 np.ravel([origin, *self._walked]),
             ]
         )
         self._markers.publish(self._templates[len(corners)].fill(values, at))
 
 
-def _forms(corners: int, zmp_limit_m: float, planned_points: int) -> list[MarkerForm]:
+def _forms(corners: int, zmp_limit_m: float) -> list[MarkerForm]:
     """Return the markers, in the order of their values."""
     return [
         MarkerForm(
@@ -173,7 +166,7 @@ def _forms(corners: int, zmp_limit_m: float, planned_points: int) -> list[Marker
             _PALE_BLUE,
         ),
         MarkerForm(
-            "waist_planned", Marker.LINE_STRIP, _LINE_M, _ORANGE, points=planned_points
+            "waist_planned", Marker.LINE_STRIP, _LINE_M, _ORANGE, points=_PLANNED_POINTS
         ),
         MarkerForm("waist_walked", Marker.POINTS, _DOT_M, _GREY, points=_WALKED_POINTS),
     ]

@@ -12,21 +12,24 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from std_srvs.srv import SetBool, Trigger
 
 from biped_common.seeds import robot_stream
-from biped_description.urdf import urdf_path
+from biped_description.robot import Robot
 from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
-from biped_ros.messages import segment_of, segment_template, segment_values
+from biped_ros.messages import SegmentReader
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
-from msgs_json.wire import MalformedMessageError, RefusedMessageError, decode, encode
+from msgs_json.walk_plan import WalkPlan
+from msgs_json.wire import RefusedMessageError, decode, encode
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
+from sim_node.engines import plant_of
 from sim_node.markers import MarkerPublisher
 from sim_node.pilot import Pilot, check_stance
+from sim_node.planned_walk import PlannedWalk
 from sim_node.realtime import Punctuality, RealtimeLoop
 from sim_node.settings import SimNodeSettings
 from sim_node.tick_publisher import TickPublisher
@@ -39,16 +42,21 @@ class SimNode(GuardedNode):
     """Lockstep: the robot walks a segment when it comes, as fast as all can."""
 
     def __init__(self, **options: Any) -> None:
-        """Wait for the stance, then stand and begin the first walk.
+        """Wait for the plan, then stand and begin the first walk.
 
         Args:
             options: of `rclpy.node.Node`, such as `parameter_overrides`.
+
+        Raises:
+            EngineMissingError: the physics engine is not installed.
         """
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(SimNodeSettings, self._on_settings)
         self._settings = settings
+        self._robot = Robot(settings.robot)
+        plant_of(settings.sim.engine)  # one that is missing is refused here
         self._rng = np.random.default_rng(robot_stream(settings.seed))
-        self._stance: WaistSegment | None = None
+        self._walk: PlannedWalk | None = None
         self._pilot: Pilot | None = None
         self._loop: RealtimeLoop | None = None
         self._paused = False
@@ -59,16 +67,15 @@ class SimNode(GuardedNode):
         self._ticks = TickPublisher(self, settings.publish_every_ticks)
         self._markers = MarkerPublisher(
             self,
+            settings.robot,
             settings.sim.limits.zmp_error_m,
-            settings.segment_rows,
             settings.markers_every_ticks,
         )
         self._observations = self.publisher(topics.OBSERVATION)
         description = self.publisher(topics.ROBOT_DESCRIPTION)
-        description.publish(string_message(urdf_path().read_text()))
-        self._stance_template = segment_template(rows=1)
-        self._template = segment_template(settings.segment_rows)
-        self.listen(topics.STANCE, self._on_stance)
+        description.publish(string_message(self._robot.urdf))
+        self._segments = SegmentReader()
+        self.listen(topics.PLAN, self._on_plan)
         self.listen(topics.WAIST_REFERENCE, self._on_segment)
         self.listen(topics.EPISODE, self._on_episode)
         self.create_timer(_WATCH_PERIOD_S, self._watch_peers)
@@ -96,25 +103,24 @@ class SimNode(GuardedNode):
 
     # -- messages ------------------------------------------------------------------
 
-    def _on_stance(self, message: bytes) -> None:
-        read = self._stance_template.read(message)
-        if read is None:
-            raise MalformedMessageError("stance: not a waist reference of one row")
-        stance = segment_of(read[0])
-        check_stance(stance)
-        if self._stance is None:
-            self._stance = stance
-            self._stand(stance)
-        elif not np.array_equal(segment_values(stance), segment_values(self._stance)):
+    def _on_plan(self, message: bytes) -> None:
+        plan = decode(WalkPlan, string_text(message))
+        if self._walk is None:
+            walk = PlannedWalk(plan)
+            check_stance(self._robot, walk.stance)
+            self._walk = walk
+            self._stand(walk)
+        elif plan != self._walk.plan:
             raise RefusedMessageError(
-                "another stance than walks begin in; start sim_node anew to change it"
+                "another plan than is walked; start sim_node anew to change it"
             )
 
-    def _stand(self, stance: WaistSegment) -> None:
+    def _stand(self, walk: PlannedWalk) -> None:
         """Build the world around the robot in its stance."""
         biped = SimulatedBiped(
+            self._robot,
             self._settings.sim,
-            stance,
+            walk.stance,
             self._rng,
             self._on_tick,
             name=uuid.uuid4().hex[:8],
@@ -140,15 +146,11 @@ class SimNode(GuardedNode):
         if self._paused and self._loop is None:
             self._held = message
             return
-        read = self._template.read(message)
-        if read is None:
-            raise MalformedMessageError(
-                f"waist reference: not {self._settings.segment_rows} rows of this form"
-            )
-        if self._pilot is None:
-            raise RefusedMessageError("no stance is known yet")
-        values, clock_ticks = read
-        segment = segment_of(values)
+        positions, clock_ticks = self._segments.read(message)
+        if self._pilot is None or self._walk is None:
+            raise RefusedMessageError("no plan is known yet")
+        answered = self._pilot.answered(clock_ticks)
+        segment = self._walk.segment(answered.control_tick, positions)
         if self._loop is None:
             latency_ns = time.monotonic_ns() - self._observed_ns
             self._publish(self._pilot.execute(clock_ticks, segment))

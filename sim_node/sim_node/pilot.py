@@ -6,7 +6,7 @@ Pure bookkeeping around the robot; the node brings the messages and the time.
 from __future__ import annotations
 
 from biped_description.errors import DescriptionError
-from biped_description.kinematics import leg_joint_positions
+from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
@@ -15,14 +15,14 @@ from msgs_json.wire import RefusedMessageError
 from sim_node.biped import SimulatedBiped
 
 
-def check_stance(stance: WaistSegment) -> None:
-    """Refuse a pose in which the robot cannot stand.
+def check_stance(robot: Robot, stance: WaistSegment) -> None:
+    """Refuse a pose in which a robot cannot stand.
 
     Raises:
         RefusedMessageError: the legs do not reach it.
     """
     try:
-        leg_joint_positions(stance.waist, stance.left_foot, stance.right_foot)
+        robot.leg_joint_positions(stance.waist, stance.left_foot, stance.right_foot)
     except DescriptionError as error:
         raise RefusedMessageError(f"stance: {error}") from None
 
@@ -60,7 +60,7 @@ class Pilot:
         Raises:
             RefusedMessageError: the segment is not for now.
         """
-        self._check(clock_ticks)
+        self.answered(clock_ticks)
         self.segment = segment
         try:
             self.observation = self.biped.execute(segment)
@@ -74,7 +74,7 @@ class Pilot:
         Raises:
             RefusedMessageError: the segment is not for now.
         """
-        self._check(clock_ticks)
+        self.answered(clock_ticks)
         try:
             self.biped.follow(segment)
         except ValueError as error:
@@ -104,11 +104,18 @@ class Pilot:
                 f"result of walk {result.episode}, the present one is {self.walks}"
             )
 
-    def _check(self, clock_ticks: int) -> None:
-        expected = None if self.observation is None else self.observation.clock_ticks
-        if clock_ticks != expected:
+    def answered(self, clock_ticks: int) -> Observation:
+        """Return the observation that a segment of this time answers.
+
+        Raises:
+            RefusedMessageError: it is not the present one, or the walk is over.
+        """
+        observation = self.observation
+        expected = None if observation is None else observation.clock_ticks
+        if observation is None or clock_ticks != expected:
             raise RefusedMessageError(
                 f"segment for clock tick {clock_ticks}, the robot waits at {expected}"
             )
         if self.biped.end_cause is not None:
             raise RefusedMessageError(f"the walk is over: {self.biped.end_cause}")
+        return observation

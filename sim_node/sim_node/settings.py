@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from biped_common.settings import check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
+from biped_description.settings import RobotSettings
+from sim_node.engines import ENGINES
 
 
 @dataclass(frozen=True)
-class LimitSettings:
-    """What ends a walk."""
+class LimitSettings(Settings):
+    """What ends a walk, besides the robot's own velocity limit."""
 
     zmp_error_m: float = setting(
         0.065, "m", "norm of the ZMP error that is a failure (Table 1)", above=0.0
-    )
-    joint_velocity_rad_s: float = setting(
-        20.0 * math.pi, "rad/s", "joint speed that is a failure (Table 1)", above=0.0
     )
     torque_saturation_s: float = setting(
         0.1, "s", "a joint held at its torque limit this long is a failure", above=0.0
@@ -28,13 +26,9 @@ class LimitSettings:
         0.01, "m", "a sole this deep in the floor is a fault of the physics", above=0.0
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class DisturbanceSettings:
+class DisturbanceSettings(Settings):
     """Differences between the robot as planned and the robot as it is.
 
     Random ones are drawn anew for every walk from the generator given to the robot.
@@ -68,10 +62,6 @@ class DisturbanceSettings:
         upper=1.0,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
     @property
     def random(self) -> bool:
         """Whether chance has a part in the walks, so that no two are the same."""
@@ -86,19 +76,38 @@ class DisturbanceSettings:
 
 
 @dataclass(frozen=True)
-class SimSettings:
+class SimSettings(Settings):
     """The simulated robot."""
 
+    engine: str = setting(
+        "pybullet",
+        "",
+        "pybullet: full physics; kinematic: joints on their references, no contact",
+        choices=tuple(ENGINES),
+    )
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
 
+    def check_together(self) -> None:
+        """Refuse disturbances that would have no effect."""
+        for name in ENGINES[self.engine].unfelt:
+            value = getattr(self.disturbances, name)
+            nominal = getattr(DisturbanceSettings(), name)
+            if value != nominal:
+                raise SettingsError(
+                    f"disturbances.{name}",
+                    value,
+                    f"must be {nominal}: it has no effect with engine = {self.engine}",
+                )
+
 
 @dataclass(frozen=True)
-class SimNodeSettings:
+class SimNodeSettings(Settings):
     """All of the simulation node."""
 
+    robot: RobotSettings = section(RobotSettings)
     sim: SimSettings = section(SimSettings)
-    seed: int = setting(0, "", "of the disturbances", lower=0)
+    seed: int = setting(0, "", "of the disturbances", lower=0, upper=2**63 - 1)
     pace: str = setting(
         "lockstep",
         "",
@@ -112,9 +121,6 @@ class SimNodeSettings:
         above=0.0,
         upper=20.0,
         live=True,
-    )
-    segment_rows: int = setting(
-        60, "control ticks", "rows of a waist segment: 10 and the look-ahead", lower=11
     )
     publish_every_ticks: int = setting(
         1,
@@ -146,7 +152,3 @@ class SimNodeSettings:
         lower=0,
         upper=10,
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)

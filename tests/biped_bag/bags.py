@@ -1,9 +1,14 @@
 """Bags to read, cut, damage and mend."""
 
-from collections.abc import Sequence
+import contextlib
 from pathlib import Path
 
-from biped_bag.writer import BagWriter, RecordedMessage
+from mcap.exceptions import EndOfFile
+from mcap.records import Attachment, Message
+from mcap.stream_reader import StreamReader
+
+from biped_bag.storage.contents import BagMessage, BagTopic
+from biped_bag.storage.writer import BagWriter
 from biped_description.joints import JOINT_NAMES
 from biped_ros.cdr import string_message
 from biped_ros.messages import clock_template, joint_state_template
@@ -29,7 +34,7 @@ SLOW = (topics.ROBOT_DESCRIPTION,)
 TICKS_PER_FLUSH = 50  # as the recorder flushes, every 0.1 s
 
 
-def control_tick(tick: int) -> list[RecordedMessage]:
+def control_tick(tick: int) -> list[BagMessage]:
     """What the 500 Hz topics say at a control tick; no two messages are alike."""
     at_ns = START_NS + tick * TICK_NS
     positions = [tick * 1e-3 + joint for joint in range(len(JOINT_NAMES))]
@@ -37,18 +42,18 @@ def control_tick(tick: int) -> list[RecordedMessage]:
     states = joint_state_template(JOINT_NAMES, with_effort=True).fill(values, tick)
     clock = clock_template().fill((), tick)
     return [
-        RecordedMessage(topics.CLOCK.name, bytes(clock), at_ns, at_ns - 5, tick + 1),
-        RecordedMessage(
+        BagMessage(topics.CLOCK.name, bytes(clock), at_ns, at_ns - 5, tick + 1),
+        BagMessage(
             topics.JOINT_STATES.name, bytes(states), at_ns + 7, at_ns - 3, tick + 1
         ),
     ]
 
 
-def robot_description() -> RecordedMessage:
+def robot_description() -> BagMessage:
     """The latched message with which recordings start."""
     message = string_message("<robot name='biped'/>")
     name = topics.ROBOT_DESCRIPTION.name
-    return RecordedMessage(name, message, START_NS, START_NS - 100, 1)
+    return BagMessage(name, message, START_NS, START_NS - 100, 1)
 
 
 def record(
@@ -57,7 +62,7 @@ def record(
     episode_ticks: int = 0,
     attachment: bytes = b"",
     **options: int,
-) -> list[RecordedMessage]:
+) -> list[BagMessage]:
     """Write a bag; return its messages.
 
     Args:
@@ -72,9 +77,9 @@ def record(
     )
     for topic in (*FAST, *SLOW):
         qos = LATCHED if topic.latched else RELIABLE
-        writer.add_topic(topic.name, topic.type_name, [qos], latched=topic.latched)
+        writer.add_topic(BagTopic(topic.name, topic.type_name, [qos]))
     if attachment:
-        writer.attach("memory.npz", "application/octet-stream", attachment, START_NS)
+        writer.attach(memory(attachment))
     messages = [robot_description()]
     writer.write(messages[0])
     for tick in range(ticks):
@@ -87,6 +92,17 @@ def record(
     return messages
 
 
-def identities(messages: Sequence[object]) -> list[tuple[object, ...]]:
-    """Messages without what only the reader or only the writer knows."""
-    return sorted((m.topic, m.data, m[-3], m[-2], m[-1]) for m in messages)
+def memory(content: bytes) -> Attachment:
+    """The attachment of a learner's memory."""
+    kind = "application/octet-stream"
+    return Attachment(START_NS, START_NS, "memory.npz", kind, content)
+
+
+def messages_to_the_end(file: Path) -> list[Message]:
+    """Messages of a file that was not finished, up to its last complete chunk."""
+    messages = []
+    with file.open("rb") as content, contextlib.suppress(EndOfFile):
+        for record in StreamReader(content).records:
+            if isinstance(record, Message):
+                messages.append(record)
+    return messages

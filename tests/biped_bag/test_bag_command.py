@@ -6,7 +6,7 @@ import re
 import pytest
 from tests.biped_bag.bags import record
 
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
 
 READERS = ("info {}", "cut {} out --start 0", "export {} out")
 # What is given as a bag, and what the line must say.

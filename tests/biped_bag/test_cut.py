@@ -12,8 +12,9 @@ from tests.biped_bag.bags import (
 
 from biped_bag.cut import cut, stretch_of_episodes, stretch_of_time
 from biped_bag.errors import BagError
-from biped_bag.reader import BagReader
-from biped_bag.writer import BagWriter
+from biped_bag.storage.contents import BagTopic
+from biped_bag.storage.reader import BagReader
+from biped_bag.storage.writer import BagWriter
 from msgs_json import topics
 
 CLOCK, STATES = topics.CLOCK.name, topics.JOINT_STATES.name
@@ -43,7 +44,7 @@ def test_the_stretch_holds_exactly_the_messages_of_its_time(bag, tmp_path):
 
 def test_messages_keep_their_times(bag, tmp_path):
     cut(bag, tmp_path / "out", stretch_of_time(bag, 0.2, 0.4))
-    times = [m.log_time_ns for m in BagReader(tmp_path / "out").messages([CLOCK])]
+    times = [m.log_ns for m in BagReader(tmp_path / "out").messages([CLOCK])]
     assert times == [START_NS + tick * TICK_NS for tick in range(100, 200)]
 
 
@@ -52,7 +53,7 @@ def test_what_was_latched_before_stands_at_the_start(bag, tmp_path):
     out = BagReader(tmp_path / "out")
     (latched,) = out.messages([ROBOT])
     assert latched.data == robot_description().data
-    assert latched.log_time_ns == out.start_ns == START_NS + 25 * TICK_NS
+    assert latched.log_ns == out.start_ns == START_NS + 25 * TICK_NS
     assert out.topics[ROBOT].latched
 
 
@@ -94,7 +95,7 @@ def walks(tmp_path_factory):
     """Four walks of 50 control ticks each."""
     folder = tmp_path_factory.mktemp("walks") / "bag"
     writer = BagWriter(folder, records={"biped.run": {"seed": "7"}})
-    writer.add_topic(CLOCK, topics.CLOCK.type_name, [RELIABLE])
+    writer.add_topic(BagTopic(CLOCK, topics.CLOCK.type_name, [RELIABLE]))
     for tick in range(200):
         writer.write(control_tick(tick)[0])
         if tick % 50 == 49:
@@ -113,7 +114,7 @@ def test_episodes_are_cut_from_their_first_to_their_last_message(walks, tmp_path
     cut(walks, tmp_path / "out", stretch_of_episodes(walks, 2, 3))
     out = BagReader(tmp_path / "out")
     assert data_of(out, CLOCK) == [control_tick(t)[0].data for t in range(50, 150)]
-    episodes = [r.values["episode"] for r in out.metadata_records("biped.episode")]
+    episodes = [r.metadata["episode"] for r in out.records("biped.episode")]
     assert episodes == ["2", "3"]
 
 

@@ -7,8 +7,8 @@ import pytest
 from tests.biped_bag.bags import record
 
 from biped_bag.info import info_mapping, info_text, run_text
-from biped_bag.reader import BagReader
-from biped_bag.writer import BagWriter
+from biped_bag.storage.reader import BagReader
+from biped_bag.storage.writer import BagWriter
 
 
 @pytest.fixture

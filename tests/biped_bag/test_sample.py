@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from biped_bag.reader import BagReader
-from biped_bag.recorded_session import recorded_session
-from biped_bag.recorded_walks import WANTED
-from biped_bag.verify import verify
-from biped_bag.verify_report import Verdict
+from biped_bag.storage.reader import BagReader
+from biped_bag.verification.learner import recorded_session
+from biped_bag.verification.report import Verdict
+from biped_bag.verification.verify import verify
+from biped_bag.verification.walks import WANTED
 from biped_bringup.cli.main import main
 
 SAMPLE = Path(__file__).parents[2] / "bags/sample"

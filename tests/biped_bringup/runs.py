@@ -5,7 +5,7 @@ from typing import Any
 
 from biped_bringup.run_settings import RunSettings, load_settings
 from biped_bringup.training import TrainingRun
-from learner_node.memory_hash import arrays_sha256
+from learner_node.memory import arrays_sha256
 
 # One step, learned in three subtasks of one success each.
 SHORT = ("gait.steps=1", "learner.schedule.successes_per_subtask=1")
@@ -38,11 +38,11 @@ class Record:
 def record(run: TrainingRun) -> Record:
     """Take the record of a run."""
     return Record(
-        memory_sha256=run.learner.memory_sha256(),
+        memory_sha256=run.session.memory_sha256(),
         trajectory_sha256=run.tally.trajectories_sha256,
         log_sha256=arrays_sha256(run.log.arrays()),
         tally=dict(vars(run.tally)),
-        progress=run.learner.progress(),
+        progress=run.session.header()["progress"],
     )
 
 

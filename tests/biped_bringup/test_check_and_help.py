@@ -8,6 +8,8 @@ import yaml
 from biped_bringup.cli.main import parser
 from biped_bringup.run_settings import PRESETS, RunSettings, load_settings
 from biped_common.settings import from_mapping, to_mapping
+from biped_description.robot import Robot
+from biped_description.settings import RobotSettings
 
 # Options that take a number with a unit, and how their help names it.
 UNITS = {
@@ -46,6 +48,19 @@ def test_the_settings_shown_serve_as_a_configuration(biped, tmp_path):
     shown = biped("check", "--preset", "quick", "--show").out
     (tmp_path / "mine.yaml").write_text(shown)
     assert biped("check", "--config", "mine.yaml", "--show").out == shown
+
+
+def test_the_urdf_printed_is_that_of_the_robot_described(biped):
+    outcome = biped("check", "--urdf", "--set", "robot.thigh_length_m=0.25")
+    assert outcome.out == Robot(RobotSettings(thigh_length_m=0.25)).urdf
+
+
+def test_a_gait_out_of_the_robots_reach_is_refused_in_one_line(biped):
+    outcome = biped("check", "--set", "robot.thigh_length_m=0.1")
+    assert (outcome.status, len(outcome.err.splitlines())) == (2, 1)
+    assert outcome.err.startswith(
+        "biped check: the robot cannot walk this gait: tick 0"
+    )
 
 
 def test_the_json_of_a_check_has_all_settings(biped):

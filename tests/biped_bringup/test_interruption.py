@@ -8,8 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.biped_bringup.conftest import Outcome
 from tests.biped_bringup.runs import Record, quick, record
+from tests.conftest import Outcome
 
 from biped_bringup.cli.learn import INTERRUPTED
 from biped_bringup.training import TrainingRun

@@ -27,9 +27,7 @@ LEARN_KEYS = {
     "replay_off",
     "computed_ticks",
     "replayed_ticks",
-    "basis_states",
-    "fixed_states",
-    "penalty_states",
+    "figures",
     "memory_sha256",
     "trajectory_sha256",
     "memory_file",
@@ -93,7 +91,10 @@ def test_the_figures_of_a_run_fit_together(biped):
     values = biped(*SHORT_LEARN).values
     assert values["target_time_s"] == 3.75
     assert 0 < values["simulated_s"] <= values["episodes"] * values["target_time_s"]
-    assert values["fixed_states"] + values["penalty_states"] <= values["basis_states"]
+    figures = values["figures"]
+    assert (
+        figures["fixed_states"] + figures["penalty_states"] <= figures["basis_states"]
+    )
     assert values["cpu_s"] > 0.0
 
 
@@ -101,7 +102,7 @@ def test_the_reported_hashes_are_those_of_the_memory(biped):
     values = biped(*SHORT_LEARN, "--episodes", 2).values
     run = TrainingRun.load(Path(values["memory_file"]))
     run.close()
-    assert values["memory_sha256"] == run.learner.memory_sha256()
+    assert values["memory_sha256"] == run.session.memory_sha256()
     assert values["trajectory_sha256"] == run.tally.trajectories_sha256
 
 

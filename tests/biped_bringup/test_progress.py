@@ -33,13 +33,12 @@ def plain() -> Console:
 
 def test_the_line_tells_the_state_of_the_run(run, plain):
     line = TrainingProgress(run, plain).line()
-    agent = run.learner.agent
-    assert f"target {run.learner.schedule.target_ticks * 0.002:5.2f} s" in line
-    assert f"successes {run.learner.schedule.successes} " in line
+    schedule, figures = run.session.task.schedule, run.session.learner.figures()
+    assert f"target {schedule.target_ticks * 0.002:5.2f} s" in line
+    assert f"successes {schedule.successes} " in line
     assert "episodes 6 " in line
     assert f"survival {100 * run.log.survival():.0f} %" in line
-    assert f"states {agent.basis_states} " in line
-    assert f"fixed {agent.fixed_states}, penalty {agent.penalty_states}" in line
+    assert f"basis states {figures['basis_states']}, fixed states" in line
     assert re.search(r"\d+\.\d simulated s/s$", line)
 
 

@@ -1,6 +1,6 @@
 """What `biped up` can and cannot be told about recording."""
 
-from biped_bag.writer import BagWriter
+from biped_bag.storage.writer import BagWriter
 
 
 def test_a_bag_is_not_recorded_over(biped, tmp_path):

@@ -87,7 +87,7 @@ MISFITS: dict[str, tuple[Change, str]] = {
         lambda _, arrays: arrays.update({"mood": np.zeros(3)}),
         "mood",
     ),
-    "another version": (lambda header, _: header.update(version=2), "version 2"),
+    "another version": (lambda header, _: header.update(version=1), "version 1"),
     "another format": (lambda header, _: header.update(format="cart"), "is cart"),
 }
 

@@ -73,12 +73,16 @@ def test_a_run_with_a_memory_of_its_own_does_not_touch_another(training):
 # -- checkpoints -------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("disturbances", [(), DISTURBED], ids=["calm", "disturbed"])
+@pytest.mark.parametrize(
+    "changes",
+    [(), DISTURBED, ("learner.method=q_lambda",)],
+    ids=["calm", "disturbed", "q_lambda"],
+)
 @pytest.mark.parametrize("saved_after", [1, 3])
 def test_a_resumed_run_is_as_if_never_interrupted(
-    training, uninterrupted, tmp_path, saved_after, disturbances
+    training, uninterrupted, tmp_path, saved_after, changes
 ):
-    settings = quick(*SHORT, *disturbances)
+    settings = quick(*SHORT, *changes)
     learn(training(settings), saved_after).save(tmp_path / "memory.npz")
     resumed = learn(training(tmp_path / "memory.npz"), SHORT_EPISODES)
     assert record(resumed) == uninterrupted(settings).after(SHORT_EPISODES)
@@ -212,12 +216,12 @@ def test_a_learned_run_does_not_go_on(training):
 def test_the_summary_tells_where_the_run_stands(training):
     run = learn(training(quick(*SHORT), seed=4), 1)
     summary = run.summary(Path("memory.npz"))
-    log, agent = run.log.arrays(), run.learner.agent
+    log = run.log.arrays()
     assert summary["seed"] == 4
     assert summary["episodes"] == 1
     assert summary["simulated_s"] == pytest.approx(0.002 * log["control_ticks"][0])
-    assert summary["basis_states"] == agent.basis_states > 0
-    assert summary["memory_sha256"] == run.learner.memory_sha256()
+    assert summary["figures"] == run.session.learner.figures()
+    assert summary["memory_sha256"] == run.session.memory_sha256()
     assert summary["memory_file"] == "memory.npz"
 
 

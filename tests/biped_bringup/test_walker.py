@@ -8,8 +8,8 @@ from tests.biped_bringup.runs import SHORT, quick
 
 from biped_bringup.walker import Walker
 from biped_common.timing import TICKS_PER_LEARNING_TICK
-from learner_node.walking.actions import NO_CORRECTION_M
-from learner_node.walking.frozen import FrozenWalk, static_walk
+from learner_node.walking.task import NO_CORRECTION_M
+from learner_node.walking.walks import FrozenWalk, static_walk
 from msgs_json.end_cause import EndCause
 from sim_node.control_tick import ControlTick
 

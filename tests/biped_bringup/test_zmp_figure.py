@@ -8,7 +8,7 @@ from tests.biped_bringup.runs import SHORT, quick
 
 from biped_bringup.walker import Walker
 from biped_bringup.zmp_figure import ZmpTrace, draw_zmp
-from learner_node.walking.frozen import FrozenWalk, static_walk
+from learner_node.walking.walks import FrozenWalk, static_walk
 
 SETTINGS = quick(*SHORT)
 
@@ -23,7 +23,13 @@ def drawn(tmp_path: Path):
         if responder is not None:
             walker.walk(responder)
         picture = tmp_path / name
-        draw_zmp(trace, walker.reference.plan, SETTINGS.sim.limits, picture)
+        draw_zmp(
+            trace,
+            walker.reference.plan,
+            SETTINGS.robot,
+            SETTINGS.sim.limits,
+            picture,
+        )
         return picture
 
     draw.trace, draw.walk_ticks = trace, walker.walk_ticks

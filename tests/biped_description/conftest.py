@@ -1,13 +1,15 @@
-"""The robot as two independent libraries see it."""
+"""Two robots, each as two independent libraries see it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import pinocchio as pin
 import pybullet
 import pytest
+from tests.robots import SHIPPED, TALL
 
-from biped_description.urdf import urdf_path
+from biped_description.robot import Robot
 
 
 @dataclass
@@ -33,15 +35,27 @@ class BulletRobot:
         )
 
 
+@pytest.fixture(scope="session", params=[SHIPPED, TALL], ids=["shipped", "tall"])
+def robot(request: pytest.FixtureRequest) -> Robot:
+    return request.param
+
+
 @pytest.fixture(scope="session")
-def bullet_robot() -> Iterator[BulletRobot]:
+def urdf_file(robot: Robot, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("urdf") / "biped.urdf"
+    file.write_text(robot.urdf, encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="session")
+def bullet_robot(urdf_file: Path) -> Iterator[BulletRobot]:
     client = pybullet.connect(pybullet.DIRECT)
     flags = pybullet.URDF_USE_INERTIA_FROM_FILE
-    body = pybullet.loadURDF(str(urdf_path()), flags=flags, physicsClientId=client)
+    body = pybullet.loadURDF(str(urdf_file), flags=flags, physicsClientId=client)
     yield BulletRobot(client, body)
     pybullet.disconnect(client)
 
 
 @pytest.fixture(scope="session")
-def pin_model() -> pin.Model:
-    return pin.buildModelFromUrdf(str(urdf_path()), pin.JointModelFreeFlyer())
+def pin_model(robot: Robot) -> pin.Model:
+    return pin.buildModelFromXML(robot.urdf, pin.JointModelFreeFlyer())

@@ -1,16 +1,10 @@
 """Order and limits of the joints."""
 
-import numpy as np
 import pytest
 
-from biped_description.joints import (
-    JOINT_NAMES,
-    POSITION_LOWER,
-    POSITION_UPPER,
-    TORQUE_LIMIT,
-)
+from biped_description.joints import JOINT_NAMES
 
-LIMITS = {"lower": POSITION_LOWER, "upper": POSITION_UPPER, "torque": TORQUE_LIMIT}
+LIMITS = ["position_lower_rad", "position_upper_rad", "torque_limit_nm"]
 
 
 def test_joints_go_down_the_left_leg_then_down_the_right():
@@ -30,12 +24,13 @@ def test_joints_go_down_the_left_leg_then_down_the_right():
     )
 
 
-@pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS.keys())
-def test_both_legs_have_the_same_limits(limits):
-    np.testing.assert_array_equal(limits[:6], limits[6:])
+@pytest.mark.parametrize("name", LIMITS)
+def test_both_legs_have_the_limits_of_the_table(robot, name):
+    limits = getattr(robot, name).tolist()
+    assert limits[:6] == limits[6:] == list(getattr(robot.settings, name))
 
 
-@pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS.keys())
-def test_limits_cannot_be_changed(limits):
+@pytest.mark.parametrize("name", [*LIMITS, "link_masses_kg"])
+def test_what_a_robot_hands_out_cannot_be_changed(robot, name):
     with pytest.raises(ValueError, match="read-only"):
-        limits[0] = 0.0
+        getattr(robot, name)[0] = 0.0

@@ -1,59 +1,31 @@
-"""The committed URDF, as generated and as PyBullet reads it."""
+"""The URDF as it is generated and as PyBullet reads it."""
 
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from tests.robots import SHIPPED, TALL
 
-from biped_description import urdf
-from biped_description.dimensions import BIPED
-from biped_description.joints import (
-    JOINT_NAMES,
-    POSITION_LOWER,
-    POSITION_UPPER,
-    TORQUE_LIMIT,
-    VELOCITY_LIMIT,
-)
-from biped_description.links import LINK_MASSES, LINK_NAMES
+from biped_description.joints import JOINT_NAMES
+from biped_description.links import CONTACT_LINKS, LINK_NAMES
 
 TORSO = -1  # PyBullet's number for the base link
 
 
-def test_the_committed_file_is_what_the_tables_generate():
-    assert urdf.urdf_path().read_text(encoding="utf-8") == urdf.urdf_text()
-
-
-def test_writing_replaces_the_file_and_leaves_nothing_else(tmp_path):
-    path = tmp_path / "biped.urdf"
-    path.write_text("stale")
-    urdf.write_urdf(path)
-    assert {each.name: each.read_text() for each in tmp_path.iterdir()} == {
-        "biped.urdf": urdf.urdf_text()
-    }
-
-
-def test_without_write_the_text_is_printed(capsys):
-    urdf.main([])
-    assert capsys.readouterr().out == urdf.urdf_text()
-
-
-def test_with_write_the_committed_file_is_rewritten(tmp_path, monkeypatch):
-    path = tmp_path / "biped.urdf"
-    monkeypatch.setattr(urdf, "urdf_path", lambda: path)
-    urdf.main(["--write"])
-    assert path.read_text() == urdf.urdf_text()
-
-
-def test_the_crown_of_a_stretched_robot_is_1_10_m_above_the_floor():
+@pytest.mark.parametrize(
+    ("robot", "height_m"), [(SHIPPED, 1.10), (TALL, 1.69)], ids=["shipped", "tall"]
+)
+def test_the_crown_of_a_stretched_robot_is_above_the_floor_by_its_height(
+    robot, height_m
+):
     tops = []
-    for visual in ET.fromstring(urdf.urdf_text()).iterfind(
-        "link[@name='torso']/visual"
-    ):
+    for visual in ET.fromstring(robot.urdf).iterfind("link[@name='torso']/visual"):
         z = float(visual.find("origin").get("xyz").split()[2])
         box = visual.find("geometry/box")
         if box is not None:
             tops.append(z + float(box.get("size").split()[2]) / 2)
-    assert max(tops) + BIPED.stretched_leg_length == pytest.approx(1.10, abs=1e-9)
+    crown_m = max(tops) + robot.settings.stretched_leg_length_m
+    assert crown_m == pytest.approx(height_m, abs=0.005)
 
 
 def test_bullet_finds_the_joints_in_our_order(bullet_robot):
@@ -80,36 +52,36 @@ def test_bullet_finds_only_revolute_joints(bullet_robot):
 @pytest.mark.parametrize(
     ("field", "expected"),
     [
-        (8, POSITION_LOWER),
-        (9, POSITION_UPPER),
-        (10, TORQUE_LIMIT),
-        (11, np.full(12, VELOCITY_LIMIT)),
+        (8, lambda robot: robot.position_lower_rad),
+        (9, lambda robot: robot.position_upper_rad),
+        (10, lambda robot: robot.torque_limit_nm),
+        (11, lambda robot: np.full(12, robot.settings.velocity_limit_rad_s)),
     ],
     ids=["lower", "upper", "torque", "velocity"],
 )
-def test_bullet_finds_our_limits(bullet_robot, field, expected):
+def test_bullet_finds_our_limits(robot, bullet_robot, field, expected):
     found = [bullet_robot.joint_info(joint)[field] for joint in bullet_robot.joints]
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(found, expected(robot), rtol=0, atol=1e-9)
 
 
-def test_bullet_finds_our_masses(bullet_robot):
+def test_bullet_finds_our_masses(robot, bullet_robot):
     masses = [bullet_robot.mass(link) for link in (TORSO, *bullet_robot.joints)]
-    np.testing.assert_allclose(masses, LINK_MASSES, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(masses, robot.link_masses_kg, rtol=0, atol=1e-12)
 
 
-def test_only_the_soles_collide(bullet_robot):
+def test_only_the_contact_links_collide(bullet_robot):
     colliding = [
-        link
-        for link in (TORSO, *bullet_robot.joints)
+        bullet_robot.joint_info(link)[12].decode()
+        for link in bullet_robot.joints
         if bullet_robot.collision_shapes(link)
     ]
-    feet = [JOINT_NAMES.index("left_ankle_roll"), JOINT_NAMES.index("right_ankle_roll")]
-    assert colliding == feet
+    assert not bullet_robot.collision_shapes(TORSO)
+    assert tuple(colliding) == CONTACT_LINKS
 
 
-@pytest.mark.parametrize("foot", ["left_foot", "right_foot"])
+@pytest.mark.parametrize("foot", CONTACT_LINKS)
 def test_the_sole_spans_its_box_about_the_point_under_the_ankle(foot):
-    collision = ET.fromstring(urdf.urdf_text()).find(f"link[@name='{foot}']/collision")
+    collision = ET.fromstring(SHIPPED.urdf).find(f"link[@name='{foot}']/collision")
     centre = np.array(collision.find("origin").get("xyz").split(), dtype=float)
     size = np.array(collision.find("geometry/box").get("size").split(), dtype=float)
     corners = [centre - size / 2, centre + size / 2]  # from the ankle

@@ -22,7 +22,7 @@ def quick(**changes):
 
 def hashes(session):
     """What was learned and what was walked."""
-    return session.learner.memory_sha256(), session.tally.trajectories_sha256
+    return session.memory_sha256(), session.tally.trajectories_sha256
 
 
 def learned_in_process(episodes):
@@ -30,7 +30,7 @@ def learned_in_process(episodes):
     run = TrainingRun(load_settings("quick"), SEED)
     run.run(episodes, False, lambda _: True)
     run.close()
-    return run.learner.memory_sha256(), run.tally.trajectories_sha256
+    return hashes(run.session)
 
 
 class Client:

@@ -4,10 +4,9 @@ import msgspec
 import pytest
 from std_msgs.msg import String
 from tests.graph.clients import TIMEOUT_S, Client, quick
+from tests.robots import SHIPPED
 
 from biped_bringup.one_executor import OneExecutor
-from biped_ros.guarded import message_type
-from biped_ros.messages import segment_template, segment_values
 from biped_ros.qos import qos_profile
 from msgs_json import topics
 from msgs_json.observation import Observation
@@ -109,14 +108,13 @@ def test_messages_that_are_refused_and_that_never_came_are_told(domain):
 
 
 def test_a_stance_that_no_leg_reaches_is_refused(domain):
-    reference = WaistReference(GaitSettings(), CorrectionSettings())
-    values = segment_values(reference.stance())
-    values[0, 0, 2] = 5.0  # the waist, five metres high
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
+    plan = msgspec.structs.replace(reference.walk_plan(), waist_m=(0.0, 0.0, 5.0))
     with OneExecutor(quick(listen_s=60.0), domain) as graph, Client(graph) as client:
         publisher = client.node.create_publisher(
-            message_type(topics.STANCE), topics.STANCE.name, qos_profile(topics.STANCE)
+            String, topics.PLAN.name, qos_profile(topics.PLAN)
         )
-        publisher.publish(segment_template(rows=1).fill(values))
+        publisher.publish(String(data=encode(plan)))
         assert graph.spin_until(
-            lambda: graph.sim.counts["/biped/stance refused"] == 1, TIMEOUT_S
+            lambda: graph.sim.counts["/biped/plan refused"] == 1, TIMEOUT_S
         )

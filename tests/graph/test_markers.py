@@ -10,6 +10,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from scipy.spatial import ConvexHull
 from tests.graph.clients import Client, quick
 from tests.graph.domains import MODULE, own_domain
+from tests.robots import SHIPPED
 from visualization_msgs.msg import Marker, MarkerArray
 
 from biped_bringup.one_executor import OneExecutor
@@ -39,12 +40,12 @@ def area(corners):
 
 
 def test_without_a_foot_on_the_floor_there_is_no_support():
-    assert support_polygon([]) == []
+    assert support_polygon(SHIPPED.settings, []) == []
 
 
 @given(places)
 def test_one_foot_supports_with_its_sole(foot):
-    polygon = support_polygon([foot])
+    polygon = support_polygon(SHIPPED.settings, [foot])
     np.testing.assert_allclose(sorted(polygon), sorted(sole(foot)))
     assert area(polygon) == pytest.approx(LENGTH_M * WIDTH_M)
 
@@ -52,7 +53,7 @@ def test_one_foot_supports_with_its_sole(foot):
 @settings(deadline=None)
 @given(places, places)
 def test_two_feet_support_with_the_hull_of_both_soles(left, right):
-    polygon = support_polygon([left, right])
+    polygon = support_polygon(SHIPPED.settings, [left, right])
     hull = ConvexHull(sole(left) + sole(right))
     assert area(polygon) == pytest.approx(hull.volume)
     # No corner lies outside of the hull: A x + b <= 0 inside.

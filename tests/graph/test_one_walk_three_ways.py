@@ -10,22 +10,28 @@ from biped_bringup.run_settings import load_settings
 from biped_bringup.training import TrainingRun
 
 SEED = 5
-EPISODES = 30
+EPISODES = 20
 TIMEOUT_S = 90.0
 
 
+@pytest.fixture(scope="module", params=["xol", "q_lambda"])
+def settings(request):
+    """Return the settings of a run with either learner."""
+    return load_settings("quick", changes=[f"learner.method={request.param}"])
+
+
 @pytest.fixture(scope="module")
-def in_process():
+def in_process(settings):
     """Return memory and trajectory hashes of the episodes learned by plain calls."""
-    run = TrainingRun(load_settings("quick"), SEED)
+    run = TrainingRun(settings, SEED)
     run.run(EPISODES, False, lambda _: True)
     run.close()
-    return run.learner.memory_sha256(), run.tally.trajectories_sha256
+    return run.session.memory_sha256(), run.tally.trajectories_sha256
 
 
-def test_one_executor_learns_the_same(domain, in_process):
+def test_one_executor_learns_the_same(domain, settings, in_process):
     parameters = node_parameters(
-        load_settings("quick"),
+        settings,
         SEED,
         max_episodes=EPISODES,
         publish_every_ticks=10,
@@ -34,14 +40,14 @@ def test_one_executor_learns_the_same(domain, in_process):
     with OneExecutor(parameters, domain) as graph:
         session = graph.learner.session
         assert graph.spin_until(lambda: session.episodes == EPISODES, TIMEOUT_S)
-        hashes = session.learner.memory_sha256(), session.tally.trajectories_sha256
+        hashes = session.memory_sha256(), session.tally.trajectories_sha256
     assert hashes == in_process
 
 
-def test_three_processes_learn_the_same(processes, tmp_path, in_process):
+def test_three_processes_learn_the_same(processes, tmp_path, settings, in_process):
     file = tmp_path / "memory.npz"
     parameters = node_parameters(
-        load_settings("quick"), SEED, checkpoint_file=str(file), max_episodes=EPISODES
+        settings, SEED, checkpoint_file=str(file), max_episodes=EPISODES
     )
     for name, values in parameters.flat().items():
         processes(f"{name}.node", values)
@@ -53,4 +59,4 @@ def test_three_processes_learn_the_same(processes, tmp_path, in_process):
             run = TrainingRun.load(file)
             run.close()
     assert run is not None
-    assert (run.learner.memory_sha256(), run.tally.trajectories_sha256) == in_process
+    assert (run.session.memory_sha256(), run.tally.trajectories_sha256) == in_process

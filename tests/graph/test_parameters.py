@@ -215,12 +215,21 @@ def test_a_wrong_parameter_at_the_start_is_refused(standing, name, value, said):
         )
 
 
+@pytest.mark.parametrize("text", ["{", "[]", "3", ""])
+def test_settings_of_the_run_that_are_no_json_object_are_refused(standing, text):
+    with pytest.raises(SettingsError, match=r"^run_settings = .*: is not the JSON"):
+        LearnerNode(
+            context=standing.graph.sim.context,
+            parameter_overrides=[Parameter("run_settings", value=text)],
+        )
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         (
             "sim_node: {ros__parameters: {nonsense: 1}}",
-            "wrong parameter: nonsense = 1: unknown key",
+            "cannot start: nonsense = 1: unknown key",
         ),
         ("sim_node: {ros__parameters: {seed: 1", "wrong arguments: "),
     ],

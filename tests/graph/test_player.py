@@ -11,7 +11,7 @@ from rosgraph_msgs.msg import Clock
 from tests.graph.domains import MODULE, own_domain
 from tests.graph.players import SAMPLE, Listener, Player, recorder, wait_for
 
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
 from biped_bringup.cli.main import main
 from msgs_json import topics
 from ros2_verbs.main import main as ros2

@@ -14,17 +14,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from mcap.exceptions import EndOfFile
 from mcap.reader import make_reader
-from mcap.records import Message
-from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
+from tests.biped_bag.bags import messages_to_the_end
 from tests.graph.domains import MODULE, own_domain
 
-from biped_bag.metadata import read_metadata
-from biped_bag.recorder.run_record import run_record
-from biped_bag.records import STATE_KEY
+from biped_bag.records import STATE_KEY, run_record
+from biped_bag.storage.metadata import read_metadata
 from biped_bringup.cli.recording import recorder_parameters
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
@@ -206,7 +203,7 @@ def test_mcap_ros2_decodes_every_message(run):
 def test_metadata_counts_every_topic(run):
     messages = recorded(run.bag)
     for topic in read_metadata(run.bag).topics:
-        assert topic.message_count == len(messages[topic.name]), topic.name
+        assert topic.count == len(messages[topic.name]), topic.name
 
 
 def test_nothing_was_lost(run):
@@ -245,7 +242,7 @@ def test_the_last_record_names_the_memory_that_was_saved(run):
     learned = TrainingRun.load(run.bag.parent / "memory.npz")
     learned.close()
     last = records(run.bag, "biped.episode")[-1]
-    assert last["memory_sha256"] == learned.learner.memory_sha256()
+    assert last["memory_sha256"] == learned.session.memory_sha256()
     assert last["trajectory_sha256"] == learned.tally.trajectories_sha256
 
 
@@ -284,22 +281,9 @@ def hard_run(tmp_path_factory):
     return left
 
 
-def stream(file):
-    """Return the messages of a file without an index, to its last complete chunk."""
-    messages = []
-    with file.open("rb") as content:
-        try:
-            for record in StreamReader(content).records:
-                if isinstance(record, Message):
-                    messages.append(record)
-        except EndOfFile:
-            pass
-    return messages
-
-
 def test_the_bag_of_a_killed_recorder_is_readable_to_the_end(hard_run):
     # 0.1 s between flushes; ten times that, since other work may be in the way.
-    messages = stream(hard_run.bag / "bag_0.mcap")
+    messages = messages_to_the_end(hard_run.bag / "bag_0.mcap")
     assert max(m.log_time for m in messages) > hard_run.killed_ns - 1_000_000_000
 
 
@@ -308,7 +292,7 @@ def test_the_bag_of_a_killed_recorder_does_not_claim_to_be_complete(hard_run):
 
 
 def test_a_recorder_that_was_killed_begins_another_bag(hard_run):
-    assert stream(hard_run.bag.with_name("bag_2") / "bag_2_0.mcap")
+    assert messages_to_the_end(hard_run.bag.with_name("bag_2") / "bag_2_0.mcap")
 
 
 def test_on_a_full_disk_the_walk_goes_on_without_a_recorder(hard_run):
@@ -322,7 +306,7 @@ def test_a_full_disk_is_reported_in_diagnostics(hard_run):
 def test_a_bag_on_a_full_disk_counts_what_is_in_it(hard_run):
     bag = hard_run.bag.with_name("bag_2")
     metadata = read_metadata(bag)
-    assert metadata.message_count == len(stream(bag / "bag_2_0.mcap"))
+    assert metadata.message_count == len(messages_to_the_end(bag / "bag_2_0.mcap"))
     assert "File too large" in metadata.custom[STATE_KEY]
 
 

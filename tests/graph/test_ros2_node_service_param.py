@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 from tests.graph.domains import MODULE, own_domain
-from tests.ros2_verbs.golden_files import golden
+from tests.ros2_verbs.golden_texts import golden
 
 from ros2_verbs.main import main
 
@@ -246,6 +246,11 @@ def test_a_dumped_file_is_loaded_as_far_as_the_node_takes_it(ros2, tmp_path):
         (
             "service call /nobody std_srvs/srv/Empty --timeout 0.1",
             "Service '/nobody' is not available",
+        ),
+        (
+            "service call /no-where std_srvs/srv/Empty",
+            "Invalid service name: topic name must not contain characters other than "
+            "alphanumerics, '_', '~', '{', or '}': '/no-where'",
         ),
     ],
 )

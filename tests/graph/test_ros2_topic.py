@@ -9,7 +9,6 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import rclpy
@@ -18,10 +17,10 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
+from tests.ros2_verbs.golden_texts import golden
 
 from ros2_verbs.main import main
 
-GOLDEN = Path(__file__).parents[1] / "ros2_verbs/golden/topic_verbs"
 TIMEOUT_S = 60.0
 PERIOD_S = 0.02
 ONCE = ("--once", "--timeout", "30")
@@ -114,15 +113,15 @@ def test_one_shot_verbs_print_what_the_original_prints(
         assert main(["topic", *words]) == 0
         return capfd.readouterr().out
 
-    assert printed("info", "/cmd_vel") == (GOLDEN / "info.txt").read_text()
+    assert printed("info", "/cmd_vel") == golden("topic_info")
     verbose = printed("info", "-v", "/chatter")
     verbose = re.sub(r"GID: [0-9a-f.]+\n", "GID: <GID>\n", verbose)
     verbose = re.sub(r"\(Depth\): \w+( \(\d+\))?", "(Depth): <HISTORY>", verbose)
-    assert verbose == (GOLDEN / "info_verbose.txt").read_text()
+    assert verbose == golden("topic_info_verbose")
     assert printed("type", "/chatter") == "std_msgs/msg/String\n"
     assert printed("find", "geometry_msgs/msg/Twist").splitlines()[0] == "/cmd_vel"
     twist = printed("echo", *ONCE, "/cmd_vel")
-    assert twist == (GOLDEN / "echo_twist.txt").read_text()
+    assert twist == golden("topic_echo_twist")
     row = printed("echo", *ONCE, "--csv", "/cmd_vel")
     assert row == "2.0,0.0,0.0,0.0,0.0,0.0\n"
     field = printed("echo", *ONCE, "--field", "linear.x", "/cmd_vel")
@@ -140,7 +139,7 @@ def test_lists_have_the_forms_of_the_original(
     second = talker.node.create_publisher(Twist, "cmd_vel", 10)
     main(["topic", "list", "-v"])
     shown = capfd.readouterr().out.splitlines(keepends=True)
-    for line in (GOLDEN / "list_verbose.txt").read_text().splitlines(keepends=True):
+    for line in golden("topic_list_verbose").splitlines(keepends=True):
         if "parameter_events" not in line:  # has as many publishers as there are nodes
             assert line in shown
     main(["topic", "list", "-t"])
@@ -159,6 +158,20 @@ def test_echo_suits_latched_and_unreliable_publishers(
     assert capfd.readouterr().out == "data: perhaps\n---\n"
 
 
+def test_echo_falls_back_to_what_connects_to_all_publishers(
+    talker: Talker, capfd: pytest.CaptureFixture[str]
+) -> None:
+    unreliable = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    second = talker.node.create_publisher(String, "chatter", unreliable)
+    main(["topic", "echo", *ONCE, "--spin-time", "2", "/chatter"])
+    assert capfd.readouterr().out == (
+        "Some, but not all, publishers are offering QoSReliabilityPolicy.RELIABLE. "
+        "Falling back to QoSReliabilityPolicy.BEST_EFFORT as it will connect to all "
+        "publishers\ndata: Hello World\n---\n"
+    )
+    assert second is not None
+
+
 def test_what_cannot_be_is_one_line_and_status_1(
     talker: Talker, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -172,6 +185,8 @@ def test_what_cannot_be_is_one_line_and_status_1(
         (["echo", "--field", "d", "/chatter"], "Invalid field 'd': 'String' object "),
         (["echo", "--filter", "m.", "/chatter"], "Invalid filter 'm.': "),
         (["delay", "/chatter"], "msg does not have header"),
+        (["pub", "/no where", "std_msgs/msg/String"], "Invalid topic name: "),
+        (["pub", "-n", "no name", "/x", "std_msgs/msg/String"], "Invalid node name: "),
         (["pub", "/x", "std_msgs/msg/Foo"], "The passed message type is invalid: "),
         (["pub", "/x", "std_msgs/msg/String", "{a: ["], "The passed value is no valid"),
         (["pub", "/x", "std_msgs/msg/String", "a: 1"], "Failed to populate field: "),
@@ -205,7 +220,7 @@ def test_what_is_published_arrives_and_is_printed(
     assert main(["topic", *words, "data: fizz"]) == 0
     lines = capfd.readouterr().out
     lines = lines[lines.index("publisher: ") :]
-    assert lines == (GOLDEN / "pub_every_second.txt").read_text()
+    assert lines == golden("topic_pub_every_second")
     end = time.monotonic() + TIMEOUT_S
     while len(talker.heard) < 4 and time.monotonic() < end:
         time.sleep(0.01)
@@ -213,7 +228,7 @@ def test_what_is_published_arrives_and_is_printed(
     twist = "{linear: {x: 2.0}, angular: {z: 1.8}}"
     words = ["pub", "--once", "-w", "0", "/turn", "geometry_msgs/msg/Twist", twist]
     assert main(["topic", *words]) == 0
-    assert capfd.readouterr().out == (GOLDEN / "pub_twist.txt").read_text()
+    assert capfd.readouterr().out == golden("topic_pub_twist")
 
 
 def test_rates_are_printed_until_interrupted(talker: Talker) -> None:

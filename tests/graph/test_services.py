@@ -76,7 +76,7 @@ def test_a_reset_ends_the_walk_without_blame(domain):
     ):
         pause_in_a_walk(graph, client)
         graph.spin_until(lambda: False, 0.2)
-        rules = graph.learner.session.learner.agent.rules
+        rules = graph.learner.session.learner.rules
         blame = rules.p.copy()
         assert client.call(Trigger, RESET).success
         results = client.messages[topics.EPISODE.name]
@@ -131,7 +131,7 @@ def test_between_walks_the_memory_is_saved_at_once(domain, tmp_path):
         assert client.call(Trigger, SAVE).message == f"saved to {file}"
         run = TrainingRun.load(file)
         run.close()
-        assert hashes(run) == hashes(session)
+        assert hashes(run.session) == hashes(session)
 
 
 def test_in_a_walk_the_memory_is_saved_at_its_end(domain, tmp_path):

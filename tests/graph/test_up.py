@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from tests.graph.players import SAMPLE
 
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
 from learner_node.checkpoint import read_checkpoint
 
 TIMEOUT_S = 120.0

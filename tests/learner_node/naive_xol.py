@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from learner_node.xol.rules import ActionSpace
+from learner_node.problem import Problem
+from learner_node.states import StateSettings
 from learner_node.xol.settings import XolSettings
 
 
@@ -47,36 +48,32 @@ class NaiveXol:
     def __init__(
         self,
         settings: XolSettings,
-        space: ActionSpace,
-        n_discrete: int,
-        n_continuous: int,
-        penalty_values: tuple[float, ...],
+        states: StateSettings,
+        problem: Problem,
         rng: np.random.Generator,
     ):
         self.settings = settings
-        self.space = space
-        self.n_discrete = n_discrete
-        self.penalty_values = penalty_values
+        self.basis = states
+        self.problem = problem
+        self.penalty_values = problem.penalty_values
         self.rng = rng
         self.states: list[State] = []
         self.queue: list[Decision] = []  # newest last
         self.state = None
         self.failures_in_a_row = 0
-        if settings.decomposed:
-            self.components = space.n_components
-            self.alternatives = space.n_alternatives
-        else:
-            self.components = 1
-            self.alternatives = space.n_alternatives**space.n_components
+        self.sizes = list(problem.space.alternatives)
+        if not settings.decomposed:
+            self.sizes = [math.prod(self.sizes)]
+        self.components = len(self.sizes)
 
     # -- Section 2: states ---------------------------------------------------------
 
     def locate(self, inputs, create):
-        states = self.settings.states
-        discrete = [float(x) for x in inputs[: self.n_discrete]]
+        states, n_discrete = self.basis, self.problem.n_discrete
+        discrete = [float(x) for x in inputs[:n_discrete]]
         point = [
             float(x) / r
-            for x, r in zip(inputs[self.n_discrete :], states.radii, strict=True)
+            for x, r in zip(inputs[n_discrete:], self.problem.radii, strict=True)
         ]
         if states.basis == "uniform":
             point = [float(round(x)) for x in point]
@@ -111,7 +108,7 @@ class NaiveXol:
         return best
 
     def table(self, value):
-        return [[value] * self.alternatives for _ in range(self.components)]
+        return [[value] * size for size in self.sizes]
 
     # -- Section 3.4: penalty sub-rules and penalty states -------------------------
 
@@ -125,7 +122,7 @@ class NaiveXol:
         """Abar_i(l): alternatives that are no penalty sub-rules for p_1, ..., p_l."""
         return [
             j
-            for j in range(self.alternatives)
+            for j in range(self.sizes[i])
             if not any(self.is_penalty_subrule(state, p, i, j) for p in range(count))
         ]
 
@@ -172,9 +169,9 @@ class NaiveXol:
         return candidates[-1]
 
     def greediest(self, state, i):
-        middle = (self.alternatives - 1) / 2
+        middle = (self.sizes[i] - 1) / 2
         best = None
-        for j in self.last_non_empty(state, i) or range(self.alternatives):
+        for j in self.last_non_empty(state, i) or range(self.sizes[i]):
             worth = (state.Q[i][j], -self.summed_P(state, i, j), -abs(j - middle))
             if best is None or worth > best[0]:
                 best = worth, j
@@ -183,7 +180,7 @@ class NaiveXol:
     def ranked(self, state, i, draw):
         candidates = self.last_non_empty(state, i)
         if not candidates:
-            return int(draw * self.alternatives)
+            return int(draw * self.sizes[i])
         candidates.sort(key=lambda j: self.summed_P(state, i, j))  # sort() is stable
         n = len(candidates)
         mark = draw * (n * (n + 1) // 2)
@@ -211,9 +208,9 @@ class NaiveXol:
         if self.settings.decomposed:
             return list(chosen)
         digits, rest = [], chosen[0]
-        for _ in range(self.space.n_components):
-            digits.insert(0, rest % self.space.n_alternatives)
-            rest //= self.space.n_alternatives
+        for size in reversed(self.problem.space.alternatives):
+            digits.insert(0, rest % size)
+            rest //= size
         return digits
 
     # -- Section 3.2: queue and eligibility ----------------------------------------
@@ -261,11 +258,11 @@ class NaiveXol:
             self.pay_for_transition(self.queue[-1])
         for state in self.states:
             for i in range(self.components):
-                for j in range(self.alternatives):
+                for j in range(self.sizes[i]):
                     state.E[i][j] *= self.settings.discount
         self.state = following
 
-    def reward(self, value, counts, whole_task=False):
+    def reward(self, value, counts, whole_task=True):
         self.failures_in_a_row = 0
         for decision in self.queue:
             if not decision.state.fixed:

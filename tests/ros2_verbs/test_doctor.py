@@ -4,23 +4,27 @@ import fcntl
 
 import pytest
 from rclpy.qos import LivelinessPolicy, QoSProfile, ReliabilityPolicy
-from tests.ros2_verbs.golden_files import golden
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+from tests.ros2_verbs.golden_texts import golden
 
-from ros2_verbs.diagnosis import graph, host, installation
-from ros2_verbs.diagnosis.area import Area, complaints, report, summary
-from ros2_verbs.diagnosis.graph import End, Topic
+from ros2_verbs.doctor import graph, host, installation
+from ros2_verbs.doctor.area import Area, complaints, report, summary
+from ros2_verbs.doctor.graph import Topic
 
 # As the graph reports it: nothing is left to the system.
 KNOWN = {"depth": 1, "liveliness": LivelinessPolicy.AUTOMATIC}
 RELIABLE = QoSProfile(**KNOWN, reliability=ReliabilityPolicy.RELIABLE)
 BEST_EFFORT = QoSProfile(**KNOWN, reliability=ReliabilityPolicy.BEST_EFFORT)
 TEXT = ["std_msgs/msg/String"]
-CHATTER = Topic(
-    "/chatter", TEXT, [End("talker", RELIABLE)], [End("listener", RELIABLE)]
-)
-DEAF = Topic(
-    "/my_chatter", TEXT, [End("mynode", BEST_EFFORT)], [End("mynode", RELIABLE)]
-)
+
+
+def end(node, qos=RELIABLE):
+    """Return a publisher or a subscription of a node."""
+    return TopicEndpointInfo(node_name=node, qos_profile=qos)
+
+
+CHATTER = Topic("/chatter", TEXT, [end("talker")], [end("listener")])
+DEAF = Topic("/my_chatter", TEXT, [end("mynode", BEST_EFFORT)], [end("mynode")])
 
 
 def interface(folder, name, flags):
@@ -69,7 +73,7 @@ def test_without_pairs_the_report_says_so():
 
 
 def test_a_topic_with_one_end_is_a_warning():
-    ends = [End("a", RELIABLE)]
+    ends = [end("a")]
     area = graph.topic_area([Topic("/x", TEXT, ends, []), Topic("/y", TEXT, [], ends)])
     assert area.warnings == [
         "Publisher without subscriber detected on /x.",
@@ -78,15 +82,14 @@ def test_a_topic_with_one_end_is_a_warning():
 
 
 def test_a_topic_of_two_types_is_an_error():
-    ends = [End("a", RELIABLE)]
+    ends = [end("a")]
     (error,) = graph.topic_area([Topic("/x", ["p/A", "p/B"], ends, ends)]).errors
     assert "/x has more than one type: p/A, p/B" in error
 
 
 def test_two_learners_are_an_error():
-    (error,) = graph.area_of_nodes(
-        ["/learner_node", "/sim_node", "/learner_node"]
-    ).errors
+    names = ["/learner_node", "/sim_node", "/learner_node"]
+    (error,) = graph.node_area(names).errors
     assert "2 nodes share the name /learner_node" in error
 
 

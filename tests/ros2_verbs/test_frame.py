@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from ros2_verbs.main import COMMANDS, main, make_parser, verbs_of
+import ros2_verbs
+from biped_common.verbs import entry_points
+from ros2_verbs.main import COMMANDS, main, make_parser
 from ros2_verbs.real_ros2 import HANDED_OVER, find, foreign_environment
 
 OURS = "#!/somewhere/python\nfrom ros2_verbs.main import main\n"
@@ -43,10 +45,19 @@ def completions(line: str, tmp_path: Path) -> list[str]:
     return [word.strip() for word in answer.read_text().splitlines()]
 
 
-def test_every_command_has_its_verbs() -> None:
-    for command in COMMANDS:
-        verbs = verbs_of(command)
-        assert verbs is None or verbs, command
+def test_every_module_that_is_a_verb_is_offered_as_one() -> None:
+    folder = Path(ros2_verbs.__file__).parent
+    written = {
+        f"ros2_verbs.{file.parent.name}.{file.stem}"
+        for file in folder.glob("*/[a-z]*.py")
+        if "\ndef main(" in file.read_text()
+    }
+    offered = {
+        point.module
+        for command in entry_points(COMMANDS)
+        for point in entry_points(f"ros2.{command}_verbs").values()
+    }
+    assert written == offered
 
 
 def test_only_the_chosen_verb_has_its_options() -> None:
@@ -63,16 +74,17 @@ def test_without_a_verb_the_help_is_printed(
     assert "Print the average receiving rate to screen" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("command", [None, *COMMANDS])
+@pytest.mark.parametrize("command", [None, *entry_points(COMMANDS)])
 def test_help_lists_each_verb_with_one_line(
     command: str | None, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    verbs = list(COMMANDS) if command is None else verbs_of(command)
+    verbs = entry_points(f"ros2.{command}_verbs" if command else COMMANDS)
     with pytest.raises(SystemExit) as ended:
         main([*([command] if command else []), "--help"])
     assert ended.value.code == 0
-    shown = capsys.readouterr().out
-    for verb in verbs or ():
+    shown, errors = capsys.readouterr()
+    assert errors == ""
+    for verb in verbs:
         assert re.search(rf"^    {verb} +[A-Z]", shown, re.MULTILINE), verb
 
 

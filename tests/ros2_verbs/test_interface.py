@@ -3,11 +3,11 @@
 from pathlib import Path
 
 import pytest
+from tests.ros2_verbs.golden_texts import golden
 
-from ros2_verbs.interface_text import code_of, nested_type
+from ros2_verbs.interface.show import code_of, nested_type
 from ros2_verbs.main import main
 
-GOLDEN = Path(__file__).parent / "golden" / "topic_verbs"
 PACKAGE = "ros2cli_test_interfaces"
 DEFINITIONS = {
     "ShortVaried": """\
@@ -50,25 +50,25 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("installed")
 @pytest.mark.parametrize(
-    ("options", "golden"),
+    ("options", "text"),
     [
-        ([], "show"),
-        (["--all-comments"], "show_all_comments"),
-        (["--no-comments"], "show_no_comments"),
+        ([], "interface_show"),
+        (["--all-comments"], "interface_show_all_comments"),
+        (["--no-comments"], "interface_show_no_comments"),
     ],
 )
 def test_comments_are_shown_as_asked(
-    options: list[str], golden: str, capsys: pytest.CaptureFixture[str]
+    options: list[str], text: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     main(["interface", "show", f"{PACKAGE}/msg/ShortVariedMultiNested", *options])
-    assert capsys.readouterr().out == (GOLDEN / f"{golden}.txt").read_text()
+    assert capsys.readouterr().out == golden(text)
 
 
 def test_a_twist_is_shown_as_in_the_tutorial(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     main(["interface", "show", "geometry_msgs/msg/Twist"])
-    assert capsys.readouterr().out == (GOLDEN / "show_twist.txt").read_text()
+    assert capsys.readouterr().out == golden("interface_show_twist")
 
 
 def test_a_package_lists_messages_or_services(

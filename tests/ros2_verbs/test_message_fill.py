@@ -19,8 +19,8 @@ from std_msgs.msg import Bool, Byte, ByteMultiArray, Float32, Int8, String, UInt
 from trajectory_msgs.msg import MultiDOFJointTrajectory
 
 from ros2_verbs.errors import VerbError
-from ros2_verbs.message_fill import fill, values_of
-from ros2_verbs.message_yaml import fields_of, to_yaml, type_name
+from ros2_verbs.messages.fill import fill, values_of
+from ros2_verbs.messages.text import fields_of, to_yaml, type_name
 
 ROUND_TRIPS = (
     ByteMultiArray,

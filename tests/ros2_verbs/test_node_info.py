@@ -1,9 +1,9 @@
 """The text of `ros2 node info`; its look at a real graph is tested in tests/graph."""
 
-from tests.ros2_verbs.golden_files import golden
+from tests.ros2_verbs.golden_texts import golden
 
+from ros2_verbs.graph.names import NodeName
 from ros2_verbs.node.info import report
-from ros2_verbs.node_names import NodeName, absolute, parse
 
 PARAMETERS = "rcl_interfaces/srv"
 TURTLE = [
@@ -55,26 +55,28 @@ TURTLE = [
 
 
 def test_the_report_is_that_of_the_tutorial():
-    text = report(parse("/my_turtle"), TURTLE, hidden=False)
+    text = report(NodeName.parse("/my_turtle"), TURTLE, hidden=False)
     assert f"{text}\n" == golden("node_info")
 
 
 def test_hidden_names_are_shown_when_asked_for():
     assert "_action/feedback: hidden" in report(
-        parse("/my_turtle"), TURTLE, hidden=True
+        NodeName.parse("/my_turtle"), TURTLE, hidden=True
     )
 
 
 def test_two_types_of_one_name_stand_side_by_side():
-    text = report(parse("/a"), [("Publishers", [("/x", ["p/B", "p/C"])])], hidden=False)
+    text = report(
+        NodeName.parse("/a"), [("Publishers", [("/x", ["p/B", "p/C"])])], hidden=False
+    )
     assert "    /x: p/B, p/C" in text
 
 
 def test_a_name_without_slash_is_one_at_the_root():
-    assert absolute("sim_node") == "/sim_node"
-    assert parse("sim_node") == parse("/sim_node") == NodeName("/", "sim_node")
+    assert NodeName.parse("sim_node") == NodeName("/", "sim_node")
+    assert NodeName.parse("sim_node").full == "/sim_node"
 
 
 def test_a_name_is_split_at_its_last_slash():
-    assert parse("/left/arm") == NodeName("/left", "arm")
-    assert parse("/left/arm").full == "/left/arm"
+    assert NodeName.parse("/left/arm") == NodeName("/left", "arm")
+    assert NodeName.parse("/left/arm").full == "/left/arm"

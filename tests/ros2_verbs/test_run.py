@@ -11,7 +11,7 @@ import pytest
 
 from biped_ros.environment import PROFILE, PROFILE_VARIABLE
 from ros2_verbs.errors import VerbError
-from ros2_verbs.executables import command_of, executables, packages
+from ros2_verbs.run.executables import command_of, executables, packages
 
 COMMAND = (sys.executable, "-m", "ros2_verbs.main", "run")
 TIMEOUT_S = 60.0

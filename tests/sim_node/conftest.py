@@ -6,11 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from tests.robots import SHIPPED
 
+from biped_description.robot import Robot
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
+from sim_node.engines import ENGINES
 from sim_node.settings import DisturbanceSettings, LimitSettings, SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
@@ -74,43 +77,59 @@ class Walker:
 @pytest.fixture(scope="session")
 def static_walk() -> list[WaistSegment]:
     """Hand out the default walk without any correction."""
-    reference = WaistReference(GaitSettings(), CorrectionSettings())
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
     return [reference.segment(np.zeros(2)) for _ in range(SEGMENTS)]
 
 
 @pytest.fixture(scope="session")
 def shaky_walk() -> list[WaistSegment]:
     """Hand out the default walk with random corrections."""
-    reference = WaistReference(GaitSettings(), CorrectionSettings())
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
     actions = np.random.default_rng(5).uniform(-0.024, 0.024, (SEGMENTS, 2))
     return [reference.segment(action) for action in actions]
 
 
 @pytest.fixture(scope="session")
 def build_walker(static_walk) -> Callable[..., Walker]:
-    """Build walkers from limits, disturbances and a seed."""
+    """Build walkers from limits, disturbances, a seed, a robot and an engine."""
 
     def build(
-        limits: dict | None = None, disturbances: dict | None = None, seed: int = 0
+        limits: dict | None = None,
+        disturbances: dict | None = None,
+        seed: int = 0,
+        robot: Robot = SHIPPED,
+        start: WaistSegment = static_walk[0],
+        engine: str = "pybullet",
     ) -> Walker:
+        felt = {
+            name: value
+            for name, value in (disturbances or {}).items()
+            if name not in ENGINES[engine].unfelt
+        }
         settings = SimSettings(
-            LimitSettings(**(limits or {})), DisturbanceSettings(**(disturbances or {}))
+            engine, LimitSettings(**(limits or {})), DisturbanceSettings(**felt)
         )
         rng = np.random.default_rng(seed)
         ticks = []
-        robot = SimulatedBiped(settings, static_walk[0], rng, on_tick=ticks.append)
-        return Walker(robot, rng, ticks)
+        simulated = SimulatedBiped(robot, settings, start, rng, on_tick=ticks.append)
+        return Walker(simulated, rng, ticks)
 
     return build
 
 
+@pytest.fixture(scope="session")
+def engine() -> str:
+    """Name the engine that walkers walk on; modules override it to try them all."""
+    return "pybullet"
+
+
 @pytest.fixture
-def new_walker(build_walker) -> Iterator[Callable[..., Walker]]:
+def new_walker(build_walker, engine) -> Iterator[Callable[..., Walker]]:
     """Build walkers that are closed when the test is over."""
     with ExitStack() as stack:
 
         def build(*args, **kwargs) -> Walker:
-            walker = build_walker(*args, **kwargs)
+            walker = build_walker(*args, engine=engine, **kwargs)
             stack.callback(walker.robot.close)
             return walker
 

@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim_node.contact import FloorContact, floor_contact
+from sim_node.contact import FloorContact
+from sim_node.pybullet_world import floor_contact
 
 LEFT, RIGHT = 5, 11
 HELD = (7.0, 8.0)

@@ -6,8 +6,10 @@ import msgspec
 import numpy as np
 import pybullet
 import pytest
+from tests.robots import SHIPPED
 
-from biped_description.joints import TORQUE_LIMIT
+from biped_description.robot import Robot
+from biped_description.settings import RobotSettings
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.wire import decode, encode
@@ -16,6 +18,7 @@ from sim_node.errors import WorldClosedError
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
 
+SLOW = Robot(RobotSettings(velocity_limit_rad_s=0.3))
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -49,14 +52,14 @@ def test_a_smaller_zmp_limit_ends_the_walk_earlier(new_walker, static_walk):
 
 
 def test_a_joint_that_turns_too_fast_ends_the_walk(new_walker, static_walk):
-    walker = new_walker({"joint_velocity_rad_s": 0.3})
+    walker = new_walker(robot=SLOW)
     assert walker.walk(static_walk)[-1].end_cause is EndCause.JOINT_VELOCITY
 
 
 def test_it_ends_at_the_very_tick_in_which_the_joint_is_too_fast(
     new_walker, static_walk
 ):
-    walker = new_walker({"joint_velocity_rad_s": 0.3})
+    walker = new_walker(robot=SLOW)
     walker.walk(static_walk)
     too_fast = np.abs(walker.joints[1]).max(axis=1) >= 0.3
     assert np.flatnonzero(too_fast).tolist() == [len(too_fast) - 1]
@@ -82,7 +85,9 @@ def test_a_saturation_that_eases_off_starts_anew(new_walker, shaky_walk):
     lasting = {"torque_saturation_s": 0.8, "zmp_error_m": 1.0}
     walker = new_walker(lasting, {"torque_limit_factor": 0.35})
     assert walker.walk(shaky_walk)[-1].end_cause is EndCause.TORQUE_SATURATION
-    saturated = (np.abs(walker.joints[2]) >= 0.999 * 0.35 * TORQUE_LIMIT).any(axis=1)
+    saturated = (
+        np.abs(walker.joints[2]) >= 0.999 * 0.35 * SHIPPED.torque_limit_nm
+    ).any(axis=1)
     assert (saturated[-400:].all(), saturated[:-400].sum() > 400) == (True, True)
 
 
@@ -143,7 +148,11 @@ def test_physics_that_is_no_number_ends_the_walk_at_once(walker, static_walk, wh
         )
     else:
         pybullet.resetJointState(
-            world.robot, world.joints[3], 0.9, np.nan, physicsClientId=world.client
+            world.robot,
+            world.joint_numbers[3],
+            0.9,
+            np.nan,
+            physicsClientId=world.client,
         )
     end = walker.go_on(static_walk[1:])[-1]
     assert (end.end_cause, end.control_tick) == (EndCause.PHYSICS_NAN, 11)
@@ -243,7 +252,7 @@ def spoil(walker, what):
     elif what == "base_velocity":
         pybullet.resetBaseVelocity(world.robot, (np.nan, 0.0, 0.0), **client)
     else:
-        joint = world.joints[3]
+        joint = world.joint_numbers[3]
         pybullet.resetJointState(world.robot, joint, 0.9, np.nan, **client)
 
 
@@ -275,6 +284,30 @@ def test_an_observation_without_numbers_goes_over_the_wire(walker, static_walk, 
     spoil(walker, what)
     end = walker.go_on(static_walk[1:3])[-1]
     assert decode(Observation, encode(end)) == end
+
+
+@pytest.mark.parametrize(
+    ("mishap", "cause"),
+    [
+        (lambda walker: raise_robot(walker, 0.8), EndCause.FEET_UNLOADED),
+        (lambda walker: raise_robot(walker, -0.2), EndCause.FOOT_THROUGH_FLOOR),
+        (lambda walker: spoil(walker, "base_velocity"), EndCause.PHYSICS_NAN),
+    ],
+)
+def test_nothing_of_a_mishap_is_left_in_the_next_walk(
+    new_walker, shaky_walk, mishap, cause
+):
+    unharmed, harmed = (
+        new_walker({"zmp_error_m": 1.0}),
+        new_walker({"zmp_error_m": 1.0}),
+    )
+    unharmed.walk(shaky_walk[:100])
+    harmed.walk(shaky_walk[:5])
+    mishap(harmed)
+    assert harmed.go_on(shaky_walk[5:20])[-1].end_cause is cause
+    harmed.forget()
+    harmed.walk(shaky_walk[:100])
+    np.testing.assert_array_equal(harmed.everything, unharmed.everything)
 
 
 # -- references taken over while walking on --------------------------------------------
@@ -323,7 +356,7 @@ def test_beyond_the_references_there_is_no_way(walker, static_walk):
 def test_a_segment_that_comes_late_is_followed_from_the_present_tick(
     sturdy_walker, static_walk
 ):
-    ahead = WaistReference(GaitSettings(), CorrectionSettings(), 50)
+    ahead = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings(), 50)
     first, second = (ahead.segment(np.zeros(2)) for _ in range(2))
     sturdy_walker.robot.begin_walk(1)
     sturdy_walker.robot.follow(first)

@@ -5,10 +5,8 @@ import hashlib
 
 import numpy as np
 import pytest
+from tests.robots import SHIPPED
 
-from biped_description.dimensions import BIPED
-from biped_description.joints import TORQUE_LIMIT
-from biped_description.kinematics import leg_joint_positions
 from sim_node.biped import SimulatedBiped
 from sim_node.contact import FloorContact
 from sim_node.control_tick import ControlTick
@@ -39,7 +37,8 @@ def static_observations(build_walker, static_walk):
 
 
 def joint_references(segment):
-    return leg_joint_positions(segment.waist, segment.left_foot, segment.right_foot)
+    pose = segment.waist, segment.left_foot, segment.right_foot
+    return SHIPPED.leg_joint_positions(*pose)
 
 
 # -- standing --------------------------------------------------------------------------
@@ -65,7 +64,7 @@ def test_a_standing_robot_has_cost_nothing(walker):
 
 def test_a_standing_robot_weighs_what_its_links_weigh(walker, static_walk):
     walker.walk(static_walk[:1])
-    assert walker.load_n[-1] == pytest.approx(9.81 * BIPED.total_mass, rel=1e-4)
+    assert walker.load_n[-1] == pytest.approx(9.81 * SHIPPED.mass_kg, rel=1e-4)
 
 
 def test_every_observation_carries_its_episode(walker, static_walk):
@@ -319,7 +318,7 @@ def test_an_undisturbed_walk_stays_clear_of_the_torque_limits(
     sturdy_walker, static_walk
 ):
     sturdy_walker.walk(static_walk[:300])
-    share = np.abs(sturdy_walker.joints[2]).max(axis=0) / TORQUE_LIMIT
+    share = np.abs(sturdy_walker.joints[2]).max(axis=0) / SHIPPED.torque_limit_nm
     assert share.max() < 0.9
 
 
@@ -353,7 +352,11 @@ def test_an_observation_has_the_time_of_its_last_control_tick(walked):
 
 def test_an_observation_names_its_simulation(static_walk):
     robot = SimulatedBiped(
-        SimSettings(), static_walk[0], np.random.default_rng(0), name="this one"
+        SHIPPED,
+        SimSettings(),
+        static_walk[0],
+        np.random.default_rng(0),
+        name="this one",
     )
     named = robot.begin_walk(1).simulation
     robot.close()

@@ -6,7 +6,14 @@ import sys
 
 import pytest
 
-BUILD_A_WORLD = "import sim_node.world as w; w.World().close()"
+BUILD_A_WORLD = """
+from biped_description.robot import Robot
+from biped_description.settings import RobotSettings
+from sim_node.pybullet_world import PyBulletWorld
+
+robot = Robot(RobotSettings())
+PyBulletWorld(robot, 0.9, robot.torque_limit_nm).close()
+"""
 CHATTER = """
 import ctypes, sys
 from sim_node.quiet import engine_chatter_dropped

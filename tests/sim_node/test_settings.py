@@ -6,6 +6,7 @@ import math
 import pytest
 
 from biped_common.settings import SettingsError, from_mapping, to_mapping
+from biped_description.settings import RobotSettings
 from sim_node.settings import (
     DisturbanceSettings,
     LimitSettings,
@@ -24,14 +25,14 @@ EVERY_FIELD = pytest.mark.parametrize(
 
 
 def test_the_limits_of_the_paper_are_the_defaults():
-    limits = LimitSettings()
-    found = limits.zmp_error_m, limits.joint_velocity_rad_s
+    found = LimitSettings().zmp_error_m, RobotSettings().velocity_limit_rad_s
     assert found == (0.065, pytest.approx(20 * math.pi))
 
 
 def test_settings_come_back_from_their_mapping():
     settings = SimSettings(
-        LimitSettings(zmp_error_m=0.05), DisturbanceSettings(friction=0.3)
+        limits=LimitSettings(zmp_error_m=0.05),
+        disturbances=DisturbanceSettings(friction=0.3),
     )
     assert from_mapping(SimSettings, to_mapping(settings)) == settings
 
@@ -76,9 +77,8 @@ def test_settings_of_the_node_come_back_from_their_mapping():
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("segment_rows", 10),
-        ("segment_rows", 60.0),
         ("publish_every_ticks", 0),
+        ("publish_every_ticks", 10.0),
         ("publish_every_ticks", 1001),
         ("timeout_s", 0.0),
         ("timeout_s", math.inf),

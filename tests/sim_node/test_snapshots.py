@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from msgs_json.end_cause import EndCause
+from sim_node.engines import ENGINES
 from sim_node.errors import SnapshotError, WorldClosedError
 
 STURDY = {"zmp_error_m": 1.0}
@@ -26,6 +27,11 @@ ANYWHERE = pytest.mark.parametrize(
     ids=["standing", "first_shift", "push", "single_support", "double_support"],
 )
 END = 160
+
+
+@pytest.fixture(scope="module", params=list(ENGINES))
+def engine(request):
+    return request.param
 
 
 @ANYWHERE
@@ -186,13 +192,16 @@ def test_a_snapshot_cannot_be_released_twice(sturdy_walker, shaky_walk):
         sturdy_walker.robot.release(snapshot)
 
 
-def test_a_released_snapshot_does_not_stand_for_a_later_one(sturdy_walker, shaky_walk):
+def test_a_released_snapshot_does_not_stand_for_a_later_one(
+    sturdy_walker, shaky_walk, engine
+):
     sturdy_walker.walk(shaky_walk[:7])
     released = sturdy_walker.robot.snapshot()
     sturdy_walker.robot.release(released)
     sturdy_walker.go_on(shaky_walk[7:9])
     later = sturdy_walker.robot.snapshot()
-    assert later.world_state == released.world_state, "the engine numbers anew"
+    # PyBullet gives the number of a state that was released to the next one.
+    assert (later.world_state == released.world_state) == (engine == "pybullet")
     with pytest.raises(SnapshotError):
         sturdy_walker.robot.restore(released)
 

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from tests.learner_node.walking.observations import observation
+from tests.robots import SHIPPED
 
 from msgs_json.end_cause import EndCause
 from msgs_json.wire import RefusedMessageError
@@ -19,7 +20,7 @@ START = 100  # of the simulation's clock
 
 
 def new_reference():
-    return WaistReference(GaitSettings(), CorrectionSettings())
+    return WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
 
 
 @pytest.fixture
@@ -32,10 +33,10 @@ def seen(control_tick, start=START, **changes):
     return observation(control_tick, clock_ticks=start + control_tick, **changes)
 
 
-def join(maker, control_tick, correction_m=LEAN, start=START, learner="one"):
+def join(maker, control_tick, correction_m=LEAN, start=START):
     """Give an observation, then its correction; return the segment."""
     assert maker.observe(seen(control_tick, start)) is None
-    return maker.correct(learner, start + control_tick, correction_m)
+    return maker.correct(start + control_tick, correction_m)
 
 
 def refused(text):
@@ -55,7 +56,7 @@ def test_an_observation_alone_makes_no_segment(maker):
 
 def test_a_correction_alone_makes_no_segment(maker):
     join(maker, 0)
-    assert maker.correct("one", START + 10, LEAN) is None
+    assert maker.correct(START + 10, LEAN) is None
 
 
 def test_a_correction_after_its_observation_makes_the_segment(maker):
@@ -65,13 +66,13 @@ def test_a_correction_after_its_observation_makes_the_segment(maker):
 def test_a_correction_before_its_observation_makes_the_same_segment(maker):
     reference = new_reference()
     join(maker, 0)
-    maker.correct("one", START + 10, -LEAN)
+    maker.correct(START + 10, -LEAN)
     reference.segment(LEAN)
     assert_same(maker.observe(seen(10)), reference.segment(-LEAN))
 
 
 def test_the_very_first_correction_may_come_before_its_observation(maker):
-    maker.correct("one", START, LEAN)
+    maker.correct(START, LEAN)
     segment = maker.observe(seen(0))
     assert segment is not None
     assert_same(segment, new_reference().segment(LEAN))
@@ -80,15 +81,15 @@ def test_the_very_first_correction_may_come_before_its_observation(maker):
 def test_a_correction_before_the_start_of_the_next_walk_serves_it(maker):
     join(maker, 0)
     maker.observe(seen(10, end_cause=EndCause.ZMP_ERROR))
-    maker.correct("one", START + 500, LEAN)
+    maker.correct(START + 500, LEAN)
     assert_same(maker.observe(seen(0, START + 500)), new_reference().segment(LEAN))
 
 
 def test_a_correction_two_observations_ahead_waits_for_its_own(maker):
     join(maker, 0)
-    maker.correct("one", START + 20, -LEAN)
+    maker.correct(START + 20, -LEAN)
     assert maker.observe(seen(10)) is None
-    assert maker.correct("one", START + 10, LEAN).first_tick == 10
+    assert maker.correct(START + 10, LEAN).first_tick == 10
     assert maker.observe(seen(20)).first_tick == 20
 
 
@@ -106,7 +107,7 @@ def test_a_walk_that_ended_needs_no_correction(maker):
     join(maker, 0)
     maker.observe(seen(10, end_cause=EndCause.ZMP_ERROR))
     with refused("which is over"):
-        maker.correct("one", START + 10, LEAN)
+        maker.correct(START + 10, LEAN)
 
 
 def test_a_correction_at_the_limit_is_accepted(maker):
@@ -148,7 +149,7 @@ def test_an_old_observation_leaves_no_trace(maker):
     maker.observe(seen(10))
     with refused("comes after"):
         maker.observe(seen(0))
-    assert maker.correct("one", START + 10, LEAN).first_tick == 10
+    assert maker.correct(START + 10, LEAN).first_tick == 10
 
 
 def test_a_walk_whose_start_was_not_seen_is_refused(maker):
@@ -160,7 +161,7 @@ def test_a_walk_whose_start_was_not_seen_gets_no_segment(maker):
     with refused("waiting"):
         maker.observe(seen(30))
     with refused("which is over"):
-        maker.correct("one", START + 30, LEAN)
+        maker.correct(START + 30, LEAN)
 
 
 def test_a_walk_of_which_an_observation_was_missed_is_refused(maker):
@@ -178,7 +179,7 @@ def test_after_an_unknown_walk_the_next_one_is_guided(maker):
 def test_a_simulation_started_anew_has_a_clock_of_its_own(maker):
     join(maker, 0)
     maker.observe(observation(0, clock_ticks=1, simulation="another"))
-    assert maker.correct("one", 1, LEAN).first_tick == 0
+    assert maker.correct(1, LEAN).first_tick == 0
 
 
 # -- refused corrections ---------------------------------------------------------------
@@ -199,71 +200,92 @@ def test_a_correction_out_of_range_is_refused(maker, correction):
 def test_a_second_correction_for_a_tick_is_refused(maker):
     join(maker, 0)
     with refused("correction for clock tick 100, which is over"):
-        maker.correct("one", START, LEAN)
+        maker.correct(START, LEAN)
 
 
 def test_a_correction_for_an_earlier_tick_is_refused(maker):
     join(maker, 0)
     maker.observe(seen(10))
     with refused("correction for clock tick 100, which is over"):
-        maker.correct("one", START, LEAN)
+        maker.correct(START, LEAN)
 
 
 @pytest.mark.parametrize(
-    "learner, clock_ticks, correction",
+    "clock_ticks, correction",
     [
-        ("one", START + 10, (np.nan, 0.0)),
-        ("one", START + 10, (0.1, 0.0)),
-        ("one", START, (0.0, 0.0)),
-        ("two", START + 10, (0.0, 0.0)),
+        (START + 10, (np.nan, 0.0)),
+        (START + 10, (0.1, 0.0)),
+        (START, (0.0, 0.0)),
     ],
-    ids=["nan", "out_of_range", "old", "second_learner"],
+    ids=["nan", "out_of_range", "old"],
 )
-def test_a_refused_correction_leaves_no_trace(maker, learner, clock_ticks, correction):
+def test_a_refused_correction_leaves_no_trace(maker, clock_ticks, correction):
     reference = new_reference()
     reference.segment(LEAN)
     join(maker, 0)
     maker.observe(seen(10))
     with pytest.raises(RefusedMessageError):
-        maker.correct(learner, clock_ticks, np.array(correction))
-    found = maker.correct("one", START + 10, -LEAN)
+        maker.correct(clock_ticks, np.array(correction))
+    found = maker.correct(START + 10, -LEAN)
     assert_same(found, reference.segment(-LEAN))
 
 
 # -- one learner -----------------------------------------------------------------------
 
 
-def test_the_first_learner_that_answers_is_listened_to(maker):
+@pytest.fixture
+def rivals(maker):
+    """Two learners that take part in a walk."""
+    maker.hear("one")
     join(maker, 0)
-    assert maker.learner == "one"
+    with refused("two takes part beside one: corrections are taken from neither"):
+        maker.hear("two")
+    return maker
 
 
-def test_a_second_learner_is_refused(maker):
-    join(maker, 0)
-    with refused("correction of a second learner, two, beside one"):
-        join(maker, 10, learner="two")
+def test_a_learner_may_say_often_that_it_takes_part(maker):
+    for tick in (0, 10, 20):
+        maker.hear("one")
+        assert join(maker, tick).first_tick == tick
 
 
-def test_a_second_learner_that_is_early_is_refused(maker):
-    join(maker, 0)
-    with refused("second learner"):
-        maker.correct("two", START + 10, LEAN)
+def test_a_learner_that_says_nothing_of_itself_may_answer(maker):
+    assert join(maker, 0).first_tick == 0
+
+
+def test_beside_a_second_learner_no_correction_is_taken(rivals):
+    with refused("while two learners take part"):
+        join(rivals, 10)
+
+
+def test_beside_a_second_learner_no_early_correction_is_taken(rivals):
+    with refused("while two learners take part"):
+        rivals.correct(START + 10, LEAN)
+    assert rivals.observe(seen(10)) is None
+
+
+def test_two_learners_stay_two_until_the_walk_is_given_up(rivals):
+    rivals.hear("one")
+    rivals.observe(seen(10, end_cause=EndCause.RESET))
+    with refused("while two learners take part"):
+        join(rivals, 0, start=START + 500)
+
+
+def test_after_a_walk_was_given_up_one_learner_may_answer(rivals):
+    rivals.observe(seen(10, end_cause=EndCause.PEER_SILENT))
+    rivals.hear("two")
+    assert join(rivals, 0, start=START + 500).first_tick == 0
 
 
 def test_a_learner_that_was_silent_is_let_go(maker):
-    join(maker, 0)
-    maker.observe(seen(10, end_cause=EndCause.PEER_SILENT))
-    assert maker.learner is None
-
-
-def test_after_a_silence_another_learner_may_answer(maker):
-    join(maker, 0)
-    maker.observe(seen(10, end_cause=EndCause.PEER_SILENT))
-    assert join(maker, 0, start=START + 500, learner="two").first_tick == 0
+    maker.hear("one")
+    maker.observe(seen(0, end_cause=EndCause.PEER_SILENT))
+    maker.hear("two")
 
 
 @pytest.mark.parametrize("cause", [EndCause.ZMP_ERROR, EndCause.RESET])
 def test_other_ends_keep_the_learner(maker, cause):
-    join(maker, 0)
-    maker.observe(seen(10, end_cause=cause))
-    assert maker.learner == "one"
+    maker.hear("one")
+    maker.observe(seen(0, end_cause=cause))
+    with refused("two takes part beside one"):
+        maker.hear("two")

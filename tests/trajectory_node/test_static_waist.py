@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from tests.robots import SHIPPED
 
-from biped_description.kinematics import com_position, leg_joint_positions
 from trajectory_node.errors import InfeasibleGaitError, TrajectoryError
 from trajectory_node.gait import plan_gait
 from trajectory_node.settings import GaitSettings
@@ -26,10 +26,10 @@ EVERY_GAIT = pytest.mark.parametrize("gait", GAITS, ids=str)
 def walk(**gait: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the static waist (n, 3), the CoM (n, 3) and the reference ZMP (n, 2)."""
     settings = GaitSettings(**gait)
-    plan = plan_gait(settings)
-    waist = static_waist(plan, settings.waist_height_m)
-    q = leg_joint_positions(waist, plan.left_foot, plan.right_foot)
-    return waist, com_position(waist, q), plan.zmp_reference
+    plan = plan_gait(settings, SHIPPED.settings)
+    waist = static_waist(SHIPPED, plan, settings.waist_height_m)
+    q = SHIPPED.leg_joint_positions(waist, plan.left_foot, plan.right_foot)
+    return waist, SHIPPED.com_position(waist, q), plan.zmp_reference
 
 
 @EVERY_GAIT

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from tests.robots import SHIPPED
 
 from msgs_json.segment import WaistSegment
 from trajectory_node.bspline import CorrectionSpline
@@ -19,7 +20,7 @@ EVERY_ARRAY = pytest.mark.parametrize("name", ARRAYS)
 
 
 def new_reference(**kwargs: int) -> WaistReference:
-    return WaistReference(GaitSettings(), CorrectionSettings(), **kwargs)
+    return WaistReference(SHIPPED, GaitSettings(), CorrectionSettings(), **kwargs)
 
 
 def segments(reference: WaistReference, actions: np.ndarray) -> list[WaistSegment]:
@@ -172,14 +173,16 @@ def test_a_snapshot_goes_on_in_another_reference(corrected):
 
 
 def test_a_snapshot_of_another_spline_is_refused():
-    smoother = WaistReference(GaitSettings(), CorrectionSettings(knot_spacing_s=0.6))
+    smoother = WaistReference(
+        SHIPPED, GaitSettings(), CorrectionSettings(knot_spacing_s=0.6)
+    )
     with pytest.raises(ValueError, match="this spline keeps"):
         new_reference().restore(smoother.snapshot())
 
 
 def test_an_infeasible_gait_is_refused_at_once():
     with pytest.raises(InfeasibleGaitError):
-        WaistReference(GaitSettings(step_length_m=0.3), CorrectionSettings())
+        WaistReference(SHIPPED, GaitSettings(step_length_m=0.3), CorrectionSettings())
 
 
 def test_a_segment_cannot_be_changed(corrected):

@@ -14,11 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
-from biped_description.dimensions import BIPED
-from trajectory_node.settings import GaitSettings
-
-# The plan runs on beyond the walk's end, standing, for look-ahead.
-LOOK_AHEAD_TICKS = 600
+from biped_description.settings import RobotSettings
+from msgs_json.walk_plan import GaitPhase
+from trajectory_node.settings import LONGEST_LOOK_AHEAD_TICKS, GaitSettings
 
 
 @dataclass(frozen=True)
@@ -43,6 +41,22 @@ class GaitPlan:
     step_index: NDArray[np.int64]
     """(rows,) single supports begun so far."""
 
+    def phases(self) -> tuple[GaitPhase, ...]:
+        """Return the stretches of the walk in which the planned support is the same."""
+        flags = np.column_stack(
+            (self.right_support, self.double_support, self.step_index)
+        )
+        changed = (flags[1:] != flags[:-1]).any(axis=1)
+        return tuple(
+            GaitPhase(
+                from_tick=int(tick),
+                right_support=bool(self.right_support[tick]),
+                double_support=bool(self.double_support[tick]),
+                step_index=int(self.step_index[tick]),
+            )
+            for tick in (0, *(np.flatnonzero(changed) + 1))
+        )
+
 
 def quintic(s: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the minimum-jerk blend from 0 to 1, clamped outside 0 <= s <= 1."""
@@ -56,23 +70,21 @@ def swing_bump(s: NDArray[np.float64]) -> NDArray[np.float64]:
     return (4.0 * s * (1.0 - s)) ** 3
 
 
-def plan_gait(settings: GaitSettings) -> GaitPlan:
-    """Lay out the walk that the settings describe.
+def plan_gait(settings: GaitSettings, robot: RobotSettings) -> GaitPlan:
+    """Lay out the walk that the settings describe, for a robot of these dimensions.
 
     Events are compared in whole microseconds, since T_step = 1.875 s is not a whole
     number of control ticks.
     """
-    ticks = microseconds(settings.duration_s) // CONTROL_PERIOD_US
-    time_us = (
-        np.arange(ticks + TICKS_PER_LEARNING_TICK + LOOK_AHEAD_TICKS)
-        * CONTROL_PERIOD_US
-    )
+    ticks = settings.walk_ticks
+    rows = ticks + TICKS_PER_LEARNING_TICK + LONGEST_LOOK_AHEAD_TICKS
+    time_us = np.arange(rows) * CONTROL_PERIOD_US
     single_us = microseconds(settings.single_support_s)
     double_us = microseconds(settings.double_support_s)
     length = settings.step_length_m
     foothold_x = {"left": 0.0, "right": 0.0}
     feet = {
-        side: np.tile((0.0, sign * BIPED.half_hip_spacing, 0.0), (len(time_us), 1))
+        side: np.tile((0.0, sign * robot.half_hip_spacing_m, 0.0), (len(time_us), 1))
         for side, sign in (("left", 1.0), ("right", -1.0))
     }
 
@@ -80,10 +92,10 @@ def plan_gait(settings: GaitSettings) -> GaitPlan:
         return (time_us - start_us) / duration_us
 
     def sole_centre(side: str) -> NDArray[np.float64]:
-        y = BIPED.half_hip_spacing * (1.0 if side == "left" else -1.0)
-        return np.array([foothold_x[side] + BIPED.sole_ahead_of_ankle, y])
+        y = robot.half_hip_spacing_m * (1.0 if side == "left" else -1.0)
+        return np.array([foothold_x[side] + robot.sole_ahead_of_ankle_m, y])
 
-    zmp_at = np.array([BIPED.sole_ahead_of_ankle, 0.0])
+    zmp_at = np.array([robot.sole_ahead_of_ankle_m, 0.0])
     zmp = np.tile(zmp_at, (len(time_us), 1))
     right_support = np.zeros(len(time_us), dtype=np.bool_)
     double_support = np.ones(len(time_us), dtype=np.bool_)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from biped_ros.cdr import string_text
+from biped_description.robot import Robot
+from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import (
+    WORLD_FRAME,
     correction_of,
     segment_template,
     segment_values,
@@ -15,10 +17,10 @@ from biped_ros.messages import (
 from biped_ros.observation_gaps import ObservationGaps
 from biped_ros.running import run_node
 from msgs_json import topics
+from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
-from msgs_json.wire import decode
-from trajectory_node.errors import InfeasibleGaitError
+from msgs_json.wire import RefusedMessageError, decode, encode
 from trajectory_node.segment_maker import SegmentMaker
 from trajectory_node.settings import TrajectorySettings
 from trajectory_node.waist_reference import WaistReference
@@ -27,10 +29,10 @@ NAME = topics.TRAJECTORY_NODE
 
 
 class TrajectoryNode(GuardedNode):
-    """Publishes the stance once, and a segment per learning tick."""
+    """Publishes the plan of the walk once, and a segment per learning tick."""
 
     def __init__(self, **options: Any) -> None:
-        """Plan the gait and announce the stance.
+        """Plan the gait and announce the plan.
 
         Args:
             options: of `rclpy.node.Node`, such as `parameter_overrides`.
@@ -41,16 +43,18 @@ class TrajectoryNode(GuardedNode):
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(TrajectorySettings)
         reference = WaistReference(
-            settings.gait, settings.correction, settings.look_ahead_ticks
+            Robot(settings.robot),
+            settings.gait,
+            settings.correction,
+            settings.look_ahead_ticks,
         )
         self._maker = SegmentMaker(reference, settings.correction_limit_m)
         self._gaps = ObservationGaps()
-        stance = reference.stance()
-        self._stance_template = segment_template(rows=1)
         self._template = segment_template(reference.rows)
         self._segments = self.publisher(topics.WAIST_REFERENCE)
-        self._stance = self.publisher(topics.STANCE)
-        self._stance.publish(self._stance_template.fill(segment_values(stance)))
+        self._plan = self.publisher(topics.PLAN)
+        self._plan.publish(string_message(encode(reference.walk_plan())))
+        self.listen(topics.LEARNER_STATUS, self._on_status)
         self.listen(topics.CORRECTION, self._on_correction)
         self.listen_once_heard(
             topics.OBSERVATION, self._on_observation, {self._segments: topics.SIM_NODE}
@@ -62,9 +66,18 @@ class TrajectoryNode(GuardedNode):
         self._publish(self._maker.observe(observation), observation.clock_ticks)
 
     def _on_correction(self, message: bytes) -> None:
-        learner, clock_ticks, correction_m = correction_of(message)
-        segment = self._maker.correct(learner, clock_ticks, correction_m)
+        frame, clock_ticks, correction_m = correction_of(message)
+        if frame != WORLD_FRAME:
+            raise RefusedMessageError(
+                f"correction in frame {frame!r}: must be in {WORLD_FRAME}"
+            )
+        segment = self._maker.correct(clock_ticks, correction_m)
         self._publish(segment, clock_ticks)
+
+    def _on_status(self, message: bytes) -> None:
+        status = decode(LearnerStatus, string_text(message))
+        if status.active:
+            self._maker.hear(status.instance)
 
     def _publish(self, segment: WaistSegment | None, clock_ticks: int) -> None:
         if segment is not None:
@@ -74,7 +87,7 @@ class TrajectoryNode(GuardedNode):
 
 def main() -> int:
     """Run the node as a process."""
-    return run_node(TrajectoryNode, wrong_input=(InfeasibleGaitError,))
+    return run_node(TrajectoryNode)
 
 
 if __name__ == "__main__":

@@ -30,9 +30,25 @@ class SegmentMaker:
         self._limit_m = limit_m
         self._observation: Observation | None = None
         self._answered = True
-        self._early: tuple[str, int, NDArray[np.float64]] | None = None
+        self._early: tuple[int, NDArray[np.float64]] | None = None
         self.learner: str | None = None
-        """The learner that is listened to; others are refused."""
+        """The learner that takes part."""
+        self._rivals = False
+
+    def hear(self, learner: str) -> None:
+        """Take note that a learner takes part.
+
+        Raises:
+            RefusedMessageError: another one does. From which of them a correction is
+                cannot be told, so none is taken until the walk has been given up.
+        """
+        if self.learner not in (None, learner):
+            self._rivals = True
+            raise RefusedMessageError(
+                f"{learner} takes part beside {self.learner}: corrections are taken "
+                "from neither until the walk has been given up"
+            )
+        self.learner = learner
 
     def observe(self, observation: Observation) -> WaistSegment | None:
         """Take an observation; return the segment if its correction is here already.
@@ -54,7 +70,7 @@ class SegmentMaker:
         self._observation = observation
         self._answered = observation.end_cause is not None
         if observation.end_cause is EndCause.PEER_SILENT:
-            self.learner = None
+            self.learner, self._rivals = None, False
         if self._answered:
             return None
         if observation.control_tick == 0:
@@ -71,18 +87,17 @@ class SegmentMaker:
         return None
 
     def correct(
-        self, learner: str, clock_ticks: int, correction_m: NDArray[np.float64]
+        self, clock_ticks: int, correction_m: NDArray[np.float64]
     ) -> WaistSegment | None:
         """Take a correction; return the segment if its observation is here already.
 
         Args:
-            learner: who sends it.
             clock_ticks: of the observation that it answers.
             correction_m: (2,) [m].
 
         Raises:
-            RefusedMessageError: not finite, out of range, old, answered before, or from
-                a second learner.
+            RefusedMessageError: not finite, out of range, old, answered before, or two
+                learners take part.
         """
         if not np.isfinite(correction_m).all():
             raise RefusedMessageError(f"correction {correction_m}: must be finite")
@@ -90,13 +105,11 @@ class SegmentMaker:
             raise RefusedMessageError(
                 f"correction {correction_m} m: must be within {self._limit_m} m"
             )
-        if self.learner is not None and learner != self.learner:
-            raise RefusedMessageError(
-                f"correction of a second learner, {learner}, beside {self.learner}"
-            )
+        if self._rivals:
+            raise RefusedMessageError("correction while two learners take part")
         observed = -1 if self._observation is None else self._observation.clock_ticks
         if clock_ticks > observed:
-            self._early = (learner, clock_ticks, correction_m)
+            self._early = (clock_ticks, correction_m)
             return None
         if clock_ticks < observed or self._answered:
             raise RefusedMessageError(
@@ -107,6 +120,5 @@ class SegmentMaker:
                 f"correction beyond the walk of {self._reference.ticks} ticks, "
                 "which is over"
             )
-        self.learner = learner
         self._answered = True
         return self._reference.segment(correction_m)

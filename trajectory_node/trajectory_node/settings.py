@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
+from biped_common.timing import control_ticks
+from biped_description.settings import RobotSettings
 
 # A foot or the ZMP cannot be moved in less time than this.
 _SHORTEST_PHASE_S = 0.1
 _ROUNDING_S = 1e-9
+LONGEST_LOOK_AHEAD_TICKS = 600
+"""The plan runs on beyond the walk's end, standing, for look-ahead."""
 
 
 @dataclass(frozen=True)
-class GaitSettings:
+class GaitSettings(Settings):
     """The walk: stand, shift over the left foot, `steps` steps, close, stand."""
 
     step_period_s: float = setting(
@@ -29,7 +33,7 @@ class GaitSettings:
     steps: int = setting(5, "steps", "single supports; the last of several closes the feet", lower=1, upper=50)  # fmt: skip  # noqa: E501
     step_length_m: float = setting(0.10, "m", "advance of each foothold over the other foot's", lower=-0.5, upper=0.5)  # fmt: skip  # noqa: E501
     swing_height_m: float = setting(0.03, "m", "clearance of the swing foot at mid-swing", lower=0.0, upper=0.2)  # fmt: skip  # noqa: E501
-    waist_height_m: float = setting(0.475, "m", "constant height of the hip line", lower=0.2, upper=0.6)  # fmt: skip  # noqa: E501
+    waist_height_m: float = setting(0.475, "m", "constant height of the hip line", above=0.0, upper=2.0)  # fmt: skip  # noqa: E501
 
     @property
     def single_support_s(self) -> float:
@@ -41,9 +45,13 @@ class GaitSettings:
         """t_w: the whole walk, (steps + 1) T_step [s]."""
         return (self.steps + 1) * self.step_period_s
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range or at odds with one another."""
-        check_ranges(self)
+    @property
+    def walk_ticks(self) -> int:
+        """Control ticks of the whole walk."""
+        return control_ticks(self.duration_s)
+
+    def check_together(self) -> None:
+        """Refuse values at odds with one another."""
         if self.double_support_s >= self.step_period_s:
             raise SettingsError(
                 "double_support_s",
@@ -66,7 +74,7 @@ class GaitSettings:
 
 
 @dataclass(frozen=True)
-class CorrectionSettings:
+class CorrectionSettings(Settings):
     """The B-spline that smooths the learner's actions (Section 4.2)."""
 
     knot_spacing_s: float = setting(
@@ -75,24 +83,21 @@ class CorrectionSettings:
     )  # fmt: skip
     order: int = setting(3, "", "order of the B-spline (degree + 1)", lower=3, upper=4)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class TrajectorySettings:
+class TrajectorySettings(Settings):
     """All of the trajectory node."""
 
+    robot: RobotSettings = section(RobotSettings)
     gait: GaitSettings = section(GaitSettings)
     correction: CorrectionSettings = section(CorrectionSettings)
     correction_limit_m: float = setting(
         0.024, "m", "corrections beyond this are refused", above=0.0, upper=0.2
     )
     look_ahead_ticks: int = setting(
-        50, "control ticks", "reference handed out beyond a segment", lower=1, upper=600
+        50,
+        "control ticks",
+        "reference handed out beyond a segment, for late peers in real time",
+        lower=1,
+        upper=LONGEST_LOOK_AHEAD_TICKS,
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_description.errors import DescriptionError
-from biped_description.kinematics import com_position, leg_joint_positions
+from biped_description.robot import Robot
 from trajectory_node.errors import InfeasibleGaitError
 from trajectory_node.gait import GaitPlan
 
@@ -18,7 +18,9 @@ from trajectory_node.gait import GaitPlan
 _ITERATIONS = 6
 
 
-def static_waist(plan: GaitPlan, waist_height_m: float) -> NDArray[np.float64]:
+def static_waist(
+    robot: Robot, plan: GaitPlan, waist_height_m: float
+) -> NDArray[np.float64]:
     """Return the (rows, 3) waist positions of the static walk, world frame [m].
 
     Raises:
@@ -29,9 +31,9 @@ def static_waist(plan: GaitPlan, waist_height_m: float) -> NDArray[np.float64]:
     )
     try:
         for _ in range(_ITERATIONS):
-            q = leg_joint_positions(waist, plan.left_foot, plan.right_foot)
-            waist[:, :2] += plan.zmp_reference - com_position(waist, q)[:, :2]
-        leg_joint_positions(waist, plan.left_foot, plan.right_foot)
+            q = robot.leg_joint_positions(waist, plan.left_foot, plan.right_foot)
+            waist[:, :2] += plan.zmp_reference - robot.com_position(waist, q)[:, :2]
+        robot.leg_joint_positions(waist, plan.left_foot, plan.right_foot)
     except DescriptionError as error:
         raise InfeasibleGaitError(
             f"the robot cannot walk this gait: {error}"

@@ -9,11 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import TICKS_PER_LEARNING_TICK
-from msgs_json.segment import WaistSegment
+from biped_description.robot import Robot
+from msgs_json.segment import WaistSegment, segment_ticks
+from msgs_json.walk_plan import WalkPlan
 from trajectory_node.bspline import CorrectionSpline
 from trajectory_node.errors import TrajectoryError
-from trajectory_node.gait import LOOK_AHEAD_TICKS, plan_gait
-from trajectory_node.settings import CorrectionSettings, GaitSettings
+from trajectory_node.gait import plan_gait
+from trajectory_node.settings import (
+    LONGEST_LOOK_AHEAD_TICKS,
+    CorrectionSettings,
+    GaitSettings,
+)
 from trajectory_node.static_waist import static_waist
 
 
@@ -22,6 +28,7 @@ class WaistReference:
 
     def __init__(
         self,
+        robot: Robot,
         gait: GaitSettings,
         correction: CorrectionSettings,
         look_ahead_ticks: int = 1,
@@ -29,6 +36,7 @@ class WaistReference:
         """Plan the walk.
 
         Args:
+            robot: that walks.
             gait: the walk.
             correction: the spline.
             look_ahead_ticks: rows handed out beyond the learning tick. One is needed
@@ -37,13 +45,13 @@ class WaistReference:
         Raises:
             InfeasibleGaitError: the robot cannot reach what the gait asks for.
         """
-        if not 1 <= look_ahead_ticks <= LOOK_AHEAD_TICKS:
+        if not 1 <= look_ahead_ticks <= LONGEST_LOOK_AHEAD_TICKS:
             raise TrajectoryError(
                 f"look_ahead_ticks = {look_ahead_ticks}: "
-                f"must be between 1 and {LOOK_AHEAD_TICKS}"
+                f"must be between 1 and {LONGEST_LOOK_AHEAD_TICKS}"
             )
-        self.plan = plan_gait(gait)
-        self.static_waist = static_waist(self.plan, gait.waist_height_m)
+        self.plan = plan_gait(gait, robot.settings)
+        self.static_waist = static_waist(robot, self.plan, gait.waist_height_m)
         self.rows = TICKS_PER_LEARNING_TICK + look_ahead_ticks
         """Rows of every segment."""
         self._spline = CorrectionSpline(correction, self.rows)
@@ -74,6 +82,18 @@ class WaistReference:
             step_index=plan.step_index[:1],
         )
 
+    def walk_plan(self) -> WalkPlan:
+        """Return what is known of every walk before it begins."""
+        plan = self.plan
+        return WalkPlan(
+            walk_ticks=plan.ticks,
+            waist_m=tuple(self.static_waist[0].tolist()),
+            left_foot_m=tuple(plan.left_foot[0].tolist()),
+            right_foot_m=tuple(plan.right_foot[0].tolist()),
+            zmp_m=tuple(plan.zmp_reference[0].tolist()),
+            phases=plan.phases(),
+        )
+
     def reset(self) -> None:
         """Go back to the start of the walk, without any correction."""
         self._tick = 0
@@ -101,7 +121,7 @@ class WaistReference:
         rows = slice(first, first + self.rows)
         waist = self.static_waist[rows].copy()
         waist[:, :2] += self._spline.push(action_m)
-        n_ticks = min(TICKS_PER_LEARNING_TICK, self.plan.ticks - first)
+        n_ticks = segment_ticks(first, self.plan.ticks)
         self._tick += n_ticks
         plan = self.plan
         return WaistSegment(

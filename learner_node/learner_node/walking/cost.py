@@ -14,6 +14,7 @@ six terms can be reported that add up.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from biped_common.timing import seconds
 from learner_node.walking.settings import CostSettings
@@ -25,6 +26,47 @@ _FINAL_ZMP_WEIGHT = 50.0
 _TRACKING_WEIGHT = 1000.0
 _TORQUE_WEIGHT = 1.0 / 1000.0
 _FINAL_JOINT_WEIGHT = 10.0
+
+
+def cost_terms(
+    settings: CostSettings,
+    *,
+    duration_s: float,
+    zmp_m2_s2: float,
+    joint_rad2_s: float,
+    torque_n2m2_s: float,
+    final_zmp_error_m: Sequence[float],
+    final_joint_error_rad: float,
+    final_joint_velocity_error_rad_s: float,
+) -> CostTerms:
+    """Return the six terms of T_err, eq. (2).
+
+    Args:
+        settings: limit of the ZMP error, and how the torque term is read.
+        duration_s: t_f, above 0.
+        zmp_m2_s2: int |Z_err|^2 t dt.
+        joint_rad2_s: int |q^ - q|^2 dt.
+        torque_n2m2_s: int |u|^2 dt.
+        final_zmp_error_m: (2,) Z_err(t_f), x and y.
+        final_joint_error_rad: mean |q^ - q|(t_f).
+        final_joint_velocity_error_rad_s: mean |dq^ - dq|(t_f).
+    """
+    tracking = _TRACKING_WEIGHT * joint_rad2_s
+    torque = _TORQUE_WEIGHT * torque_n2m2_s
+    if settings.torque_reading == "in_root":
+        root = math.sqrt(tracking + torque)
+        share = tracking / (tracking + torque) if root > 0.0 else 0.0
+        tracking, torque = root * share, root * (1.0 - share)
+    else:
+        tracking = math.sqrt(tracking)
+    return CostTerms(
+        zmp=zmp_m2_s2 / settings.zmp_limit_m**2 / duration_s,
+        final_zmp=_FINAL_ZMP_WEIGHT * sum(abs(e) for e in final_zmp_error_m),
+        joint_tracking=tracking / duration_s,
+        joint_torque=torque / duration_s,
+        final_joint_position=_FINAL_JOINT_WEIGHT * final_joint_error_rad,
+        final_joint_velocity=_FINAL_JOINT_WEIGHT * final_joint_velocity_error_rad_s,
+    )
 
 
 class CostIntegral:
@@ -60,23 +102,15 @@ class CostIntegral:
         t_f = seconds(last.control_tick)
         if t_f == 0.0:
             return None
-        settings = self._settings
-        tracking = _TRACKING_WEIGHT * self._joint_rad2_s
-        torque = _TORQUE_WEIGHT * self._torque_n2m2_s
-        if settings.torque_reading == "in_root":
-            root = math.sqrt(tracking + torque)
-            share = tracking / (tracking + torque) if root > 0.0 else 0.0
-            tracking, torque = root * share, root * (1.0 - share)
-        else:
-            tracking = math.sqrt(tracking)
-        return CostTerms(
-            zmp=self._zmp_m2_s2 / settings.zmp_limit_m**2 / t_f,
-            final_zmp=_FINAL_ZMP_WEIGHT * sum(abs(e) for e in last.zmp_error_m),
-            joint_tracking=tracking / t_f,
-            joint_torque=torque / t_f,
-            final_joint_position=_FINAL_JOINT_WEIGHT * last.mean_joint_error_rad,
-            final_joint_velocity=_FINAL_JOINT_WEIGHT
-            * last.mean_joint_velocity_error_rad_s,
+        return cost_terms(
+            self._settings,
+            duration_s=t_f,
+            zmp_m2_s2=self._zmp_m2_s2,
+            joint_rad2_s=self._joint_rad2_s,
+            torque_n2m2_s=self._torque_n2m2_s,
+            final_zmp_error_m=last.zmp_error_m,
+            final_joint_error_rad=last.mean_joint_error_rad,
+            final_joint_velocity_error_rad_s=last.mean_joint_velocity_error_rad_s,
         )
 
     def result(

@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 
 from biped_common.seeds import learner_stream
 from biped_common.timing import seconds
-from learner_node.memory_hash import Arrays
+from learner_node.memory import Arrays, arrays_sha256
+from learner_node.methods import make_learner
 from learner_node.walking.cost import CostIntegral
 from learner_node.walking.episode_log import EpisodeLog
-from learner_node.walking.frozen import FrozenWalk, greedy_walk
-from learner_node.walking.learner import WalkLearner
 from learner_node.walking.settings import LearnerSettings
+from learner_node.walking.task import WalkTask
+from learner_node.walking.walks import FrozenWalk, LearningWalk, greedy_walk
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
@@ -62,9 +63,11 @@ class LearningSession:
         self.settings = settings
         self.seed = seed
         self.walk_ticks = walk_ticks
-        self.learner = WalkLearner(
-            settings, walk_ticks, np.random.default_rng(learner_stream(seed))
+        self.task = WalkTask(settings, walk_ticks)
+        self.learner = make_learner(
+            settings, self.task.problem, np.random.default_rng(learner_stream(seed))
         )
+        self._learning = LearningWalk(self.task, self.learner)
         self.tally = Tally()
         self.log = EpisodeLog()
         self.frozen = False
@@ -72,7 +75,7 @@ class LearningSession:
         self._trial_due = False
         self.walking = False
         """Whether a walk is under way; checkpoints are taken between walks."""
-        self._walk: WalkLearner | FrozenWalk = self.learner
+        self._walk: LearningWalk | FrozenWalk = self._learning
         self._begun = ("", 0)
         """Simulation and number of the walk that was last begun."""
 
@@ -105,7 +108,7 @@ class LearningSession:
         walk = (observation.simulation, observation.episode)
         if observation.control_tick == 0 and observation.end_cause is None:
             self._walk = (
-                self.greedy() if self.frozen or self._trial_due else self.learner
+                self.greedy() if self.frozen or self._trial_due else self._learning
             )
             self._begun = walk
             self.walking = True
@@ -115,7 +118,7 @@ class LearningSession:
         if isinstance(answer, EpisodeResult):
             self.walking = False
             if not answer.learning:
-                schedule = self.learner.schedule
+                schedule = self.task.schedule
                 answer = msgspec.structs.replace(
                     answer,
                     subtask=schedule.subtask,
@@ -127,7 +130,7 @@ class LearningSession:
     def _unseen(self, observation: Observation) -> EpisodeResult:
         """Return the result of a walk that was joined in its middle, if at all."""
         self.walking = False
-        schedule, cost = self.learner.schedule, CostIntegral(self.settings.cost)
+        schedule, cost = self.task.schedule, CostIntegral(self.settings.cost)
         cost.add(observation)
         result = cost.result(
             observation,
@@ -140,11 +143,15 @@ class LearningSession:
 
     def greedy(self) -> FrozenWalk:
         """Return a frozen greedy walk of the present memory."""
-        return greedy_walk(self.settings, self.walk_ticks, self.learner.agent)
+        return greedy_walk(self.settings, self.walk_ticks, self.learner, self.task)
+
+    def memory_sha256(self) -> str:
+        """Return a hash of all that was learned."""
+        return arrays_sha256(self.learner.memory())
 
     def status(self, instance: str, active: bool) -> LearnerStatus:
         """Return how far the session has come, under the learner's name."""
-        agent, schedule = self.learner.agent, self.learner.schedule
+        schedule = self.task.schedule
         return LearnerStatus(
             instance=instance,
             active=active,
@@ -155,15 +162,13 @@ class LearningSession:
             successes=schedule.successes,
             episodes=self.episodes,
             survival=self.log.survival(),
-            basis_states=agent.basis_states,
-            fixed_states=agent.fixed_states,
-            penalty_states=agent.penalty_states,
-            t_err_estimate=self.learner.estimate.value,
+            figures=self.learner.figures(),
+            t_err_estimate=self.task.estimate.value,
             schedule_complete=schedule.complete,
             learned=self.learned,
             frozen=self.frozen,
             simulated_s=seconds(self.tally.simulated_ticks),
-            memory_sha256=self.learner.memory_sha256(),
+            memory_sha256=self.memory_sha256(),
             trajectory_sha256=self.tally.trajectories_sha256,
         )
 
@@ -171,14 +176,17 @@ class LearningSession:
         """Return what goes into a checkpoint's header."""
         return {
             "seed": self.seed,
-            "progress": self.learner.progress(),
+            "progress": {
+                **self.task.progress(),
+                "rng": self.learner.rng.bit_generator.state,
+            },
             "trial_due": self._trial_due,
             "tally": vars(self.tally),
         }
 
     def arrays(self) -> Arrays:
         """Return what goes into a checkpoint as arrays."""
-        groups = {_MEMORY: self.learner.agent.memory(), _LOG: self.log.arrays()}
+        groups = {_MEMORY: self.learner.memory(), _LOG: self.log.arrays()}
         return {
             f"{group}/{name}": array
             for group, arrays in groups.items()
@@ -196,7 +204,10 @@ class LearningSession:
             group, _, key = name.partition("/")
             groups[group][key] = array
         tally, log = Tally(**header["tally"]), EpisodeLog(groups[_LOG])
-        self.learner.restore(header["progress"], groups[_MEMORY])
+        progress = header["progress"]
+        self.learner.restore(groups[_MEMORY])
+        self.learner.rng.bit_generator.state = progress["rng"]
+        self.task.restore(progress)
         self.seed = int(header["seed"])
         self._trial_due = bool(header["trial_due"])
         self.tally, self.log = tally, log

@@ -4,25 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
-from learner_node.xol.settings import XolSettings
-
-INPUT_NAMES = (
-    "right_support",
-    "double_support",
-    "waist_x",
-    "waist_y",
-    "zmp_error_x",
-    "zmp_error_y",
-    "waist_acceleration_x",
-    "waist_acceleration_y",
-)
-N_DISCRETE = 2
-N_CONTINUOUS = len(INPUT_NAMES) - N_DISCRETE
+from biped_common.settings import Settings, section, setting
+from learner_node.methods import MethodSettings
 
 
 @dataclass(frozen=True)
-class ActionSettings:
+class ActionSettings(Settings):
     """The corrections to choose from (Section 4.2)."""
 
     limit_m: float = setting(
@@ -43,13 +30,9 @@ class ActionSettings:
         upper=50,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class InputSettings:
+class InputSettings(Settings):
     """Widths of the basis functions, which scale the continuous inputs (4.1)."""
 
     waist_radius_m: float = setting(0.03, "m", "waist position", above=0.0)
@@ -58,13 +41,9 @@ class InputSettings:
         0.9, "m/s^2", "waist acceleration", above=0.0
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
     @property
     def radii(self) -> tuple[float, ...]:
-        """One width per continuous input, in the order of INPUT_NAMES."""
+        """One width per continuous input, in the order of the inputs."""
         return (
             (self.waist_radius_m,) * 2
             + (self.zmp_error_radius_m,) * 2
@@ -73,7 +52,7 @@ class InputSettings:
 
 
 @dataclass(frozen=True)
-class CostSettings:
+class CostSettings(Settings):
     """T_err (eq. (2)) and its running estimate (eqs. (3), (4))."""
 
     zmp_limit_m: float = setting(0.065, "m", "zmpLimit of eq. (2)", above=0.0)
@@ -96,26 +75,18 @@ class CostSettings:
         upper=1.0,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class RewardSettings:
+class RewardSettings(Settings):
     """Rewards (Table 2) and penalties (Table 1)."""
 
     success: float = setting(10_000.0, "", "RWDforSuc", above=0.0)
     goal: float = setting(10.0, "", "RWDforGD", lower=0.0)
     penalty: float = setting(10.0, "", "pnlty of every type of penalty", above=0.0)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class ScheduleSettings:
+class ScheduleSettings(Settings):
     """The learning schedule (Section 5.1)."""
 
     successes_per_subtask: int = setting(
@@ -128,27 +99,13 @@ class ScheduleSettings:
         0.9375, "s", "how much later the next subtask ends (T_step / 2)", lower=0.02
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class LearnerSettings:
-    """All of the learner of the walking task."""
+class LearnerSettings(MethodSettings):
+    """All of the learner of the walking task: the method, and the task."""
 
-    xol: XolSettings = section(XolSettings)
     action: ActionSettings = section(ActionSettings)
     inputs: InputSettings = section(InputSettings)
     cost: CostSettings = section(CostSettings)
     rewards: RewardSettings = section(RewardSettings)
     schedule: ScheduleSettings = section(ScheduleSettings)
-
-    def __post_init__(self) -> None:
-        """Refuse radii in two places: they are set in `inputs`, by name and unit."""
-        if self.xol.states.radii:
-            raise SettingsError(
-                "xol.states.radii",
-                list(self.xol.states.radii),
-                "must be empty here; the widths are set in the section inputs",
-            )

@@ -1,22 +1,32 @@
 """The overall algorithm of Section 3.6, step by step, for one stream of inputs.
 
-The caller owns the environment. Per epoch t it calls, in the paper's own order,
-`choose` (2(c)i-iii), then, after the environment moved, any of `reward` (2(c)v) and
-`penalise` (2(c)vi), and `advance` (2(c)iv, vii, viii) to go on or nothing to stop.
+    begin_episode   2(a), (b)         the initial state; an empty queue
+    choose          2(c)i to iii      an action by Section 3.5; its rule into the queue
+    reward          2(c)v             Q <- Q + rwd E; TUC; Strategy 1 fixes states
+    penalise        2(c)vi            P <- P + pnlty E; fixed states released; PRD
+    advance         2(c)iv, vii       the next state; p_Np; E <- gamma E
+    finish_subtask  2(c)viii          Strategy 2 fixes states
+    finish_episode  2(c)vii, ix       useless states are forgotten
+
+It answers the calls of `learner_node.learner.Learner`; who owns the task makes them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from learner_node.memory import Arrays, check_memory, count_of_states
+from learner_node.problem import Problem
+from learner_node.states import NO_STATE, BasisStates, StateSettings
 from learner_node.xol import penalties, selection
 from learner_node.xol.queue import DecisionQueue
-from learner_node.xol.rules import ActionSpace, RuleTable
+from learner_node.xol.rules import RuleTable
 from learner_node.xol.settings import XolSettings
-from learner_node.xol.states import NO_STATE, BasisStates
 
 
 class XolAgent:
@@ -25,33 +35,25 @@ class XolAgent:
     def __init__(
         self,
         settings: XolSettings,
-        space: ActionSpace,
-        n_discrete: int,
-        n_continuous: int,
-        penalty_values: tuple[float, ...],
+        states: StateSettings,
+        problem: Problem,
         rng: np.random.Generator,
     ) -> None:
         """Start with an empty memory (step 1).
 
         Args:
             settings: the constants of Section 3.
-            space: components and alternatives of the action.
-            n_discrete: leading inputs that are discrete.
-            n_continuous: inputs after them; Ns = n_discrete + n_continuous.
-            penalty_values: pnlty per type, highest priority first; the last one is
-                the additional penalty p_Np for moving to a penalty state.
+            states: how inputs become states.
+            problem: inputs, actions and penalties.
             rng: source of every random choice.
         """
-        if len(penalty_values) < 2:
-            raise ValueError("penalty_values: at least one penalty and p_Np are needed")
         self.settings = settings
-        self.space = space
-        self.penalty_values = penalty_values
+        self.problem = problem
         self.rng = rng
-        self.states = BasisStates(settings.states, n_discrete, n_continuous)
+        self.states = BasisStates(states, problem)
         self.rules = RuleTable(
-            ActionSpace(space.n_components, space.n_alternatives, settings.decomposed),
-            len(penalty_values),
+            replace(problem.space, decomposed=settings.decomposed),
+            len(problem.penalty_values),
         )
         self.queue = DecisionQueue(settings.queue_length, self.rules.space.table_shape)
         self.episode = 0
@@ -77,9 +79,13 @@ class XolAgent:
         rules = self.rules
         draws = self.rng.random(len(self._chosen))
         if rules.penalty_state[k]:
-            selection.choose_ranked(k, draws, rules.p, rules.avoided, self._chosen)
+            selection.choose_ranked(
+                k, draws, rules.p, rules.avoided, rules.sizes, self._chosen
+            )
         elif rules.fixed[k]:
-            selection.choose_greedy(k, rules.q, rules.p, rules.avoided, self._chosen)
+            selection.choose_greedy(
+                k, rules.q, rules.p, rules.avoided, rules.sizes, self._chosen
+            )
         else:
             selection.choose_roulette(
                 k,
@@ -115,7 +121,7 @@ class XolAgent:
         self.queue.decay(self.settings.discount)
         self.state = following
 
-    def reward(self, value: float, counts: bool, whole_task: bool = False) -> None:
+    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
         """Reinforce every sub-rule in the queue (2(c)v) and fix states (Strategy 1).
 
         Args:
@@ -150,11 +156,7 @@ class XolAgent:
 
     def penalise(self, penalty: int) -> None:
         """Apply p_l (0-based l < Np - 1) and the penalty rule decision (2(c)vi)."""
-        if not 0 <= penalty < len(self.penalty_values) - 1:
-            raise ValueError(
-                f"penalty = {penalty}: must be between 0 and "
-                f"{len(self.penalty_values) - 2}"
-            )
+        self.problem.check_penalty(penalty)
         self.failures_in_a_row += 1
         self._pay_penalty(
             penalty, 0, self.settings.penalty_reach, self.settings.failure_reach
@@ -191,74 +193,44 @@ class XolAgent:
         if k == NO_STATE:
             return None
         rules = self.rules
-        selection.choose_greedy(k, rules.q, rules.p, rules.avoided, self._chosen)
+        selection.choose_greedy(
+            k, rules.q, rules.p, rules.avoided, rules.sizes, self._chosen
+        )
         return self.rules.space.alternatives_of(self._chosen)
 
     # -- figures -----------------------------------------------------------------
 
-    @property
-    def basis_states(self) -> int:
-        """NB, the number of states."""
-        return self.states.count
-
-    @property
-    def fixed_states(self) -> int:
-        """Number of states in fixed mode."""
-        return int(self.rules.fixed[: self.states.count].sum())
-
-    @property
-    def penalty_states(self) -> int:
-        """Number of penalty states."""
-        return int(self.rules.penalty_state[: self.states.count].sum())
-
-    def bytes_per_state(self) -> int:
-        """Return the memory that one state takes in all tables."""
-        return (
-            self.states.bytes_per_state()
-            + self.rules.bytes_per_state()
-            + self.queue.bytes_per_state()
-        )
+    def figures(self) -> dict[str, float]:
+        """Return NB, and how many of the states are fixed or penalty states."""
+        count = self.states.count
+        return {
+            "basis_states": count,
+            "fixed_states": int(self.rules.fixed[:count].sum()),
+            "penalty_states": int(self.rules.penalty_state[:count].sum()),
+        }
 
     # -- checkpoint --------------------------------------------------------------
 
-    def memory(self) -> dict[str, NDArray[Any]]:
+    def memory(self) -> Arrays:
         """Return a copy of all that was learned, as arrays; valid between episodes."""
-        count = self.states.count
         arrays = {
-            "state_discrete": self.states.discrete,
-            "state_centers": self.states.centers,
-            "state_life": self.states.life[:count],
+            **self.states.memory(),
             "episode": np.array(self.episode, dtype=np.int64),
             "failures_in_a_row": np.array(self.failures_in_a_row, dtype=np.int64),
         }
         for name in RuleTable.ARRAYS:
-            arrays[name] = getattr(self.rules, name)[:count]
+            arrays[name] = getattr(self.rules, name)[: self.states.count]
         return {name: array.copy() for name, array in arrays.items()}
 
-    def restore(self, memory: dict[str, NDArray[Any]]) -> None:
+    def restore(self, memory: Mapping[str, NDArray[Any]]) -> None:
         """Take over what `memory` returned.
 
         Raises:
             ValueError: an array is missing or its shape belongs to another problem.
         """
-        current = self.memory()
-        life = memory.get("state_life")
-        if life is None or life.ndim != 1:
-            raise ValueError("memory: array state_life is missing or no list")
-        count = len(life)
-        for name, own in current.items():
-            if name not in memory:
-                raise ValueError(f"memory: array {name} is missing")
-            expected = (count, *own.shape[1:]) if own.shape else ()
-            given = memory[name]
-            if given.shape != expected or given.dtype != own.dtype:
-                raise ValueError(
-                    f"memory: array {name} is {given.dtype}{given.shape}, "
-                    f"this problem needs {own.dtype}{expected}"
-                )
-        self.states.replace(
-            memory["state_discrete"], memory["state_centers"], memory["state_life"]
-        )
+        count = count_of_states(memory)
+        check_memory(memory, self.memory(), count)
+        self.states.restore(memory)
         self._make_room()
         for name in RuleTable.ARRAYS:
             getattr(self.rules, name)[:count] = memory[name]
@@ -290,7 +262,7 @@ class XolAgent:
         queue, rules = self.queue, self.rules
         penalties.add_penalty(
             penalty,
-            self.penalty_values[penalty],
+            self.problem.penalty_values[penalty],
             newest,
             min(newest + p_reach, queue.filled),
             queue.head,
@@ -314,7 +286,7 @@ class XolAgent:
 
     def _penalise_transition(self, age: int) -> None:
         """Pay p_Np to the decision of this age, which led to a penalty state."""
-        self._pay_penalty(len(self.penalty_values) - 1, age, 1, 1)
+        self._pay_penalty(self.rules.n_penalties - 1, age, 1, 1)
         self._judge(self._state_of_age(age))
 
     def _judge(self, k: int) -> bool:
@@ -327,6 +299,7 @@ class XolAgent:
             rules.selections,
             self.settings.minimum_selections,
             self.settings.failure_threshold,
+            rules.sizes,
             rules.avoided,
         )
         if rules.penalty_state[k]:

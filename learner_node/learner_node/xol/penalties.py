@@ -26,13 +26,16 @@ from learner_node.xol.array_types import (
 # it calls into does: compiled functions here call only others of their own file.
 
 
-@njit(boolean(int64, PENALTY_COUNTS, COUNTS, int64, float64, COUNTS), cache=True)
+@njit(
+    boolean(int64, PENALTY_COUNTS, COUNTS, int64, float64, INDICES, COUNTS), cache=True
+)
 def judge_state(
     k: int,
     failures: NDArray[Any],
     selections: NDArray[Any],
     minimum_selections: int,
     failure_threshold: float,
+    sizes: NDArray[Any],
     avoided: NDArray[Any],
 ) -> bool:
     """Judge all sub-rules of state k; return whether it is a penalty state.
@@ -43,15 +46,16 @@ def judge_state(
         selections: (capacity, I, J) counter of the rule table.
         minimum_selections: N0.
         failure_threshold: lambda.
+        sizes: (I,) alternatives of each component.
         avoided: (capacity, I, J) filled at k with the number of penalty types, from
             the highest priority on, that a sub-rule avoids. The set Abar_i(l) of
             Section 3.5 holds the sub-rules that avoid at least l.
     """
-    n_penalties, components, alternatives = failures.shape[1:]
+    n_penalties, components, _ = failures.shape[1:]
     penalty_state = False
     for i in range(components):
         exhausted = True
-        for j in range(alternatives):
+        for j in range(sizes[i]):
             n = selections[k, i, j]
             first = n_penalties
             if n >= minimum_selections:

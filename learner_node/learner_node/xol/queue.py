@@ -12,6 +12,7 @@ import numpy as np
 from numba import float64, int64, njit, void
 from numpy.typing import NDArray
 
+from learner_node.states import doubled
 from learner_node.xol.array_types import (
     COUNTS,
     INDICES,
@@ -19,7 +20,6 @@ from learner_node.xol.array_types import (
     QUEUED_LIVE,
     WEIGHTS,
 )
-from learner_node.xol.states import doubled
 
 _FIRST_CAPACITY = 64
 _NO_PLACE = -1
@@ -113,11 +113,6 @@ class DecisionQueue:
             self.eligibility = doubled(self.eligibility)
             self._place = doubled(self._place)
             self._place[rows:] = _NO_PLACE
-
-    def bytes_per_state(self) -> int:
-        """Return the memory of one state in the eligibility tables."""
-        arrays = (self.eligibility, self._place)
-        return sum(array.nbytes for array in arrays) // len(self.eligibility)
 
     def clear(self) -> None:
         """Empty the queue and set all E = 0 (2(b))."""

@@ -1,54 +1,18 @@
 """Rules and sub-rules: the weights Q, P and the counters behind penalty decisions.
 
-With decomposition (Section 3.4) a rule (state, action) is a set of sub-rules, one per
-action component, and every table is NB x Nm x Na. The undecomposed form, NB x Na^Nm,
-is the same code with one component whose alternatives are all the joint actions.
+Every table is NB x Nm x Na (Section 3.4). Undecomposed rules, NB x Na^Nm, are the same
+code with one component whose alternatives are all the joint actions.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from learner_node.xol.states import doubled
+from learner_node.problem import ActionSpace
+from learner_node.states import doubled
 
 _FIRST_CAPACITY = 64
-
-
-@dataclass(frozen=True)
-class ActionSpace:
-    """Nm components with Na alternatives each, seen by the tables as sub-rules."""
-
-    n_components: int
-    n_alternatives: int
-    decomposed: bool = True
-
-    def __post_init__(self) -> None:
-        """Refuse spaces without a choice."""
-        if self.n_components < 1:
-            raise ValueError(f"n_components = {self.n_components}: must be at least 1")
-        if self.n_alternatives < 2:
-            raise ValueError(
-                f"n_alternatives = {self.n_alternatives}: must be at least 2"
-            )
-
-    @property
-    def table_shape(self) -> tuple[int, int]:
-        """(components, alternatives) of the tables."""
-        if self.decomposed:
-            return self.n_components, self.n_alternatives
-        return 1, self.n_alternatives**self.n_components
-
-    def alternatives_of(self, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the (Nm,) alternatives that the chosen sub-rules stand for."""
-        if self.decomposed:
-            return chosen.copy()
-        digits = np.unravel_index(
-            int(chosen[0]), (self.n_alternatives,) * self.n_components
-        )
-        return np.array(digits, dtype=np.int64)
 
 
 class RuleTable:
@@ -64,7 +28,8 @@ class RuleTable:
         rewards: (.,) TUC, rewards since the state was last released.
         fixed: (.,) state is in fixed mode.
         penalty_state: (.,) all alternatives of some component are penalty rules.
-        avoided: (., I, J) penalty types that the sub-rule avoids, see `judge_state`.
+        avoided: (., I, J) penalty types that the sub-rule avoids, see `judge_state`;
+            -1 where a component has no such alternative.
     """
 
     # What a checkpoint holds, and what moves when states are forgotten.
@@ -86,6 +51,7 @@ class RuleTable:
         shape = space.table_shape
         rows = _FIRST_CAPACITY
         self.space = space
+        self.sizes = np.array(space.sizes, dtype=np.int64)
         self.n_penalties = n_penalties
         self.q = np.zeros((rows, *shape))
         self.p = np.zeros((rows, n_penalties, *shape))
@@ -96,7 +62,9 @@ class RuleTable:
         self.rewards = np.zeros(rows, dtype=np.int64)
         self.fixed = np.zeros(rows, dtype=np.bool_)
         self.penalty_state = np.zeros(rows, dtype=np.bool_)
-        self.avoided = np.full((rows, *shape), n_penalties, dtype=np.int64)
+        exists = np.arange(shape[1]) < self.sizes[:, None]
+        self._unjudged = np.where(exists, n_penalties, -1)
+        self.avoided = np.tile(self._unjudged, (rows, 1, 1))
 
     def grow(self, capacity: int) -> None:
         """Make room for at least `capacity` states."""
@@ -117,8 +85,4 @@ class RuleTable:
     def clear_from(self, row: int) -> None:
         """Make the rows from `row` on as if never used."""
         for name in self.ARRAYS:
-            getattr(self, name)[row:] = self.n_penalties if name == "avoided" else 0
-
-    def bytes_per_state(self) -> int:
-        """Return the memory of one state in these tables."""
-        return sum(getattr(self, name)[0].nbytes for name in self.ARRAYS)
+            getattr(self, name)[row:] = self._unjudged if name == "avoided" else 0

@@ -1,7 +1,8 @@
 """Action selection (Section 3.5): roulette, greedy, or ranking by penalty.
 
 All three fill `chosen` (I,) with one alternative per component, for state k of the rule
-table. `avoided` says how many penalty types a sub-rule avoids (see `judge_state`).
+table. `avoided` says how many penalty types a sub-rule avoids (see `judge_state`),
+`sizes` (I,) how many alternatives a component has.
 """
 
 from __future__ import annotations
@@ -51,23 +52,23 @@ def choose_roulette(
                     break
 
 
-@njit(void(int64, WEIGHTS, PENALTY_WEIGHTS, COUNTS, INDICES), cache=True)
+@njit(void(int64, WEIGHTS, PENALTY_WEIGHTS, COUNTS, INDICES, INDICES), cache=True)
 def choose_greedy(
     k: int,
     q: NDArray[Any],
     p: NDArray[Any],
     avoided: NDArray[Any],
+    sizes: NDArray[Any],
     chosen: NDArray[Any],
 ) -> None:
     """Choose the largest Q among the sub-rules that avoid the most penalties.
 
     Ties go to the smaller summed P, then to the alternative nearest the middle.
     """
-    alternatives = q.shape[2]
-    middle = 0.5 * (alternatives - 1)
     for i in range(chosen.shape[0]):
+        middle = 0.5 * (sizes[i] - 1)
         best = (-1.0, 0.0, 0.0, 0.0)
-        for j in range(alternatives):
+        for j in range(sizes[i]):
             candidate = (
                 float(avoided[k, i, j]),
                 q[k, i, j],
@@ -79,12 +80,13 @@ def choose_greedy(
                 chosen[i] = j
 
 
-@njit(void(int64, DRAWS, PENALTY_WEIGHTS, COUNTS, INDICES), cache=True)
+@njit(void(int64, DRAWS, PENALTY_WEIGHTS, COUNTS, INDICES, INDICES), cache=True)
 def choose_ranked(
     k: int,
     draws: NDArray[Any],
     p: NDArray[Any],
     avoided: NDArray[Any],
+    sizes: NDArray[Any],
     chosen: NDArray[Any],
 ) -> None:
     """Choose in a penalty state by rank of the summed P, smallest first.
@@ -93,11 +95,10 @@ def choose_ranked(
     even for the highest priority, all alternatives are equally likely. The candidate
     of rank r among n is taken with probability 2 (n - r + 1) / (n (n + 1)).
     """
-    alternatives = p.shape[3]
     for i in range(chosen.shape[0]):
         most = avoided[k, i].max()
         if most == 0:
-            chosen[i] = min(int(draws[i] * alternatives), alternatives - 1)
+            chosen[i] = min(int(draws[i] * sizes[i]), sizes[i] - 1)
             continue
         candidates = np.flatnonzero(avoided[k, i] == most)
         penalty = p[k, :, i, :].sum(axis=0)[candidates]

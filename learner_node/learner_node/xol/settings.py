@@ -2,43 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
 
 
 @dataclass(frozen=True)
-class StateSettings:
-    """How continuous inputs become discrete states (Section 2, [12, 18])."""
-
-    basis: str = setting(
-        "gaussian",
-        "",
-        "shape of the states: Gaussian bumps made where needed, or a uniform grid",
-        choices=("gaussian", "uniform"),
-    )
-    radii: tuple[float, ...] = setting(
-        (), "", "width of a basis function per continuous input, in its unit", above=0.0
-    )
-    activation_threshold: float = setting(
-        math.exp(-0.5),
-        "",
-        "a new Gaussian state is made where no existing one is this active",
-        above=0.0,
-        upper=1.0,
-    )
-    life_episodes: int = setting(
-        100, "episodes", "an unrewarded state unvisited this long is forgotten", lower=1
-    )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
-
-@dataclass(frozen=True)
-class FixedModeSettings:
+class FixedModeSettings(Settings):
     """When a state becomes fixed, and when it is released (Section 3.3)."""
 
     strategy: str = setting(
@@ -75,13 +45,9 @@ class FixedModeSettings:
         choices=("last_decisions", "nearest"),
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class XolSettings:
+class XolSettings(Settings):
     """Constants of online profit sharing with penalty avoidance (Section 3)."""
 
     discount: float = setting(
@@ -125,12 +91,10 @@ class XolSettings:
     decomposed: bool = setting(
         True, "", "sub-rules per component (Section 3.4) instead of joint rules"
     )
-    states: StateSettings = section(StateSettings)
     fixed_mode: FixedModeSettings = section(FixedModeSettings)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
+    def check_together(self) -> None:
+        """Refuse reaches beyond the queue, and memories too short to judge by."""
         if self.failure_reach > self.queue_length:
             raise SettingsError(
                 "failure_reach",

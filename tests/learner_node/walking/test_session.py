@@ -57,7 +57,7 @@ def test_another_seed_gives_another_session():
     for seed in (0, 1):
         session = new_session(seed)
         result_of(session)
-        hashes.add(session.learner.memory_sha256())
+        hashes.add(session.memory_sha256())
     assert len(hashes) == 2
 
 
@@ -84,17 +84,17 @@ def test_a_trial_does_not_learn():
 @pytest.mark.parametrize("changes", [{}, FALL], ids=["completed", "failed"])
 def test_a_trial_leaves_the_memory_alone(changes):
     session = with_schedule_complete()
-    before = session.learner.memory_sha256()
+    before = session.memory_sha256()
     result_of(session, **changes)
-    assert session.learner.memory_sha256() == before
+    assert session.memory_sha256() == before
 
 
 @pytest.mark.parametrize("changes", [{}, FALL], ids=["completed", "failed"])
 def test_a_trial_leaves_schedule_and_random_numbers_alone(changes):
     session = with_schedule_complete()
-    before = json.dumps(session.learner.progress())
+    before = json.dumps(session.header()["progress"])
     result_of(session, **changes)
-    assert json.dumps(session.learner.progress()) == before
+    assert json.dumps(session.header()["progress"]) == before
 
 
 def test_a_trial_is_no_episode():
@@ -243,9 +243,9 @@ def test_a_frozen_session_does_not_learn():
 @pytest.mark.parametrize("changes", [{}, FALL], ids=["completed", "failed"])
 def test_a_frozen_session_changes_nothing_that_was_learned(changes):
     session = frozen_session()
-    before = session.learner.memory_sha256(), json.dumps(session.learner.progress())
+    before = session.memory_sha256(), json.dumps(session.header()["progress"])
     result_of(session, **changes)
-    after = session.learner.memory_sha256(), json.dumps(session.learner.progress())
+    after = session.memory_sha256(), json.dumps(session.header()["progress"])
     assert after == before
 
 

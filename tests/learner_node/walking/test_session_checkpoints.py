@@ -1,5 +1,6 @@
 """A session goes on from a checkpoint as if never interrupted."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -81,3 +82,11 @@ def test_memory_of_other_settings_is_refused():
     session = with_schedule_complete()
     with pytest.raises(ValueError, match="array q"):
         other.restore(session.header(), session.arrays())
+
+
+def test_progress_of_another_schedule_is_refused():
+    session = new_session()
+    header = json.loads(json.dumps(session.header()))
+    header["progress"]["subtask"] = 7
+    with pytest.raises(ValueError, match="subtask 7 of 2"):
+        new_session().restore(header, session.arrays())

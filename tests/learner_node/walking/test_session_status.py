@@ -26,15 +26,13 @@ def test_the_status_of_a_new_session():
         successes=0,
         episodes=0,
         survival=0.0,
-        basis_states=0,
-        fixed_states=0,
-        penalty_states=0,
+        figures={"basis_states": 0, "fixed_states": 0, "penalty_states": 0},
         t_err_estimate=None,
         schedule_complete=False,
         learned=False,
         frozen=False,
         simulated_s=0.0,
-        memory_sha256=new_session().learner.memory_sha256(),
+        memory_sha256=new_session().memory_sha256(),
         trajectory_sha256="",
     )
 
@@ -71,17 +69,16 @@ def test_the_status_tells_survival():
 
 def test_the_status_tells_the_states_of_the_memory():
     session = learned_session()
-    agent, status = session.learner.agent, session.status("me", active=True)
-    found = status.basis_states, status.fixed_states, status.penalty_states
-    assert found == (agent.basis_states, agent.fixed_states, agent.penalty_states)
-    assert status.basis_states > 0
+    figures = session.status("me", active=True).figures
+    assert figures == session.learner.figures()
+    assert figures["basis_states"] > 0
 
 
 def test_the_status_tells_both_hashes():
     session = learned_session()
     status = session.status("me", active=True)
     assert (status.memory_sha256, status.trajectory_sha256) == (
-        session.learner.memory_sha256(),
+        session.memory_sha256(),
         session.tally.trajectories_sha256,
     )
 

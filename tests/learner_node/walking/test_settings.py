@@ -3,8 +3,9 @@
 import pytest
 
 from biped_common.settings import SettingsError, from_mapping, to_mapping
+from learner_node.states import StateSettings
 from learner_node.walking.settings import LearnerSettings
-from learner_node.xol.settings import FixedModeSettings, StateSettings, XolSettings
+from learner_node.xol.settings import FixedModeSettings, XolSettings
 
 # (dotted key, value, what the message says is allowed)
 REFUSED = [
@@ -35,11 +36,11 @@ REFUSED = [
     ("xol.failure_threshold", 1.1, "must be between 0.0 and 1.0"),
     ("xol.base_weight", 0.0, "must be above 0.0"),
     ("xol.decomposed", "yes", "must be true or false"),
-    ("xol.states.basis", "radial", "must be one of gaussian, uniform"),
-    ("xol.states.activation_threshold", 0.0, "must be above 0.0"),
-    ("xol.states.life_episodes", 0, "must be at least 1 episodes"),
-    ("xol.states.radii", [0.1] * 6, "must be empty here; the widths are set in"),
-    ("xol.states.radii", 0.1, "must be a list of float"),
+    ("states.basis", "radial", "must be one of gaussian, uniform"),
+    ("states.activation_threshold", 0.0, "must be above 0.0"),
+    ("states.life_episodes", 0, "must be at least 1 episodes"),
+    ("method", "sarsa", "must be one of xol, q_lambda"),
+    ("q_lambda.discount", 1.5, "must be at most"),
     ("xol.fixed_mode.strategy", "strategy3", "must be one of strategy1, strategy2, no"),
     ("xol.fixed_mode.rewards_to_fix", 0, "must be at least 1 rewards"),
     ("xol.fixed_mode.released_states", -1, "must be at least 0 states"),
@@ -74,11 +75,11 @@ def test_a_shorter_queue_needs_a_shorter_reach_of_failures():
     "make",
     [
         lambda: XolSettings(discount=2.0),
-        lambda: StateSettings(radii=(1.0, 0.0)),
+        lambda: StateSettings(life_episodes=0),
         lambda: FixedModeSettings(strategy="both"),
-        lambda: LearnerSettings(xol=XolSettings(states=StateSettings(radii=(1.0,)))),
+        lambda: LearnerSettings(method="sarsa"),
     ],
-    ids=["discount", "radii", "strategy", "radii in two places"],
+    ids=["discount", "life", "strategy", "method"],
 )
 def test_bad_values_are_refused_in_code_too(make):
     with pytest.raises(SettingsError):
@@ -91,7 +92,7 @@ def test_defaults_are_the_numbers_of_the_paper():
     assert settings.action.limit_m == 0.024
     assert settings.xol.minimum_selections == 7
     assert settings.xol.failure_threshold == 0.5
-    assert settings.xol.states.life_episodes == 100
+    assert settings.states.life_episodes == 100
     assert settings.cost.zmp_limit_m == 0.065
     assert settings.rewards.success == 10_000.0
     assert settings.rewards.goal == settings.rewards.penalty == 10.0

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from learner_node.problem import ActionSpace, Problem
+from learner_node.states import StateSettings
 from learner_node.xol.agent import XolAgent
-from learner_node.xol.rules import ActionSpace
-from learner_node.xol.settings import FixedModeSettings, StateSettings, XolSettings
+from learner_node.xol.settings import FixedModeSettings, XolSettings
 
 NEVER = 1000  # more than any count in these tests
 DISCOUNT = 0.5  # a power of two: traces are exact
@@ -23,7 +24,6 @@ SETTINGS = XolSettings(
     minimum_selections=1,
     selection_memory=0,
     base_weight=1e12,
-    states=StateSettings(radii=(1.0,)),
     fixed_mode=FixedModeSettings(rewards_to_fix=NEVER, patience_episodes=0),
 )
 
@@ -44,10 +44,10 @@ def new_agent(n_alternatives=2, n_components=1, fixed_mode=None, **changes):
         changes["fixed_mode"] = replace(SETTINGS.fixed_mode, **fixed_mode)
     return XolAgent(
         replace(SETTINGS, **changes),
-        ActionSpace(n_components, n_alternatives),
-        0,
-        1,
-        PENALTY_VALUES,
+        StateSettings(),
+        Problem(
+            0, (1.0,), ActionSpace((n_alternatives,) * n_components), PENALTY_VALUES
+        ),
         Draws(),
     )
 
@@ -64,7 +64,7 @@ def index(agent, letter):
 
 def take(agent, *alternatives):
     """Choose, with draws that make these the choice where all are equally likely."""
-    n = agent.space.n_alternatives
+    n = agent.problem.space.alternatives[0]
     agent.rng.coming = [(j + 0.5) / n for j in alternatives]
     chosen = tuple(agent.choose().tolist())
     assert chosen == alternatives
@@ -105,7 +105,7 @@ def failed_walk(agent, letters, taken, penalty=0):
 
 def make_penalty_state(agent, letter, penalty=0):
     """Fail with every alternative of a state."""
-    for j in range(agent.space.n_alternatives):
+    for j in range(agent.problem.space.alternatives[0]):
         failed_walk(agent, letter, str(j), penalty)
     assert is_penalty_state(agent, letter)
 

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from hypothesis import strategies as st
 
+from learner_node.problem import ActionSpace, Problem
+from learner_node.states import StateSettings
 from learner_node.xol.agent import XolAgent
-from learner_node.xol.rules import ActionSpace
-from learner_node.xol.settings import FixedModeSettings, StateSettings, XolSettings
+from learner_node.xol.settings import FixedModeSettings, XolSettings
 
 # Differences of these never add up to a squared distance of 1, where a basis function
 # of width 1 ends.
@@ -21,30 +22,29 @@ PENALTY_VALUES = (10.0, 3.0, 0.3, 7.0)
 REWARDS = (10_000.0, 10.0, 0.1)
 
 
+RADII = (1.0, 0.7, 2.0)
+
+
 @dataclass(frozen=True)
-class Problem:
-    """What a learner is made for."""
+class Case:
+    """What a learner is made for, and from."""
 
     settings: XolSettings
-    space: ActionSpace
-    n_discrete: int
-    n_continuous: int
-    n_penalties: int
+    states: StateSettings
+    problem: Problem
     seed: int
 
     def learner(self, kind=XolAgent):
         return kind(
             self.settings,
-            self.space,
-            self.n_discrete,
-            self.n_continuous,
-            PENALTY_VALUES[: self.n_penalties],
+            self.states,
+            self.problem,
             np.random.default_rng(self.seed),
         )
 
 
 @st.composite
-def problems(draw):
+def cases(draw):
     n_continuous = draw(st.integers(0, 3))
     decomposed = draw(st.booleans())
     queue_length = draw(st.integers(1, 8))
@@ -59,11 +59,6 @@ def problems(draw):
         failure_threshold=draw(st.sampled_from((0.0, 0.3, 0.5, 1.0))),
         base_weight=draw(st.sampled_from((0.5, 100.0))),
         decomposed=decomposed,
-        states=StateSettings(
-            basis=draw(st.sampled_from(("gaussian", "uniform"))),
-            radii=(1.0, 0.7, 2.0)[:n_continuous],
-            life_episodes=draw(st.integers(1, 4)),
-        ),
         fixed_mode=FixedModeSettings(
             strategy=draw(st.sampled_from(("strategy1", "strategy2", "none"))),
             rewards_to_fix=draw(st.integers(1, 3)),
@@ -73,25 +68,29 @@ def problems(draw):
             release=draw(st.sampled_from(("last_decisions", "nearest"))),
         ),
     )
-    n_components = draw(st.integers(1, 3 if decomposed else 2))
-    n_alternatives = draw(st.integers(2, 5 if decomposed else 3))
-    return Problem(
-        settings=settings,
-        space=ActionSpace(n_components, n_alternatives),
-        n_discrete=draw(st.integers(0, 2)),
-        n_continuous=n_continuous,
-        n_penalties=draw(st.integers(2, 4)),
-        seed=draw(st.integers(0, 2**16)),
+    sizes = st.integers(2, 5 if decomposed else 3)
+    alternatives = draw(st.lists(sizes, min_size=1, max_size=3 if decomposed else 2))
+    states = StateSettings(
+        basis=draw(st.sampled_from(("gaussian", "uniform"))),
+        life_episodes=draw(st.integers(1, 4)),
     )
+    problem = Problem(
+        n_discrete=draw(st.integers(0, 2)),
+        radii=RADII[:n_continuous],
+        space=ActionSpace(tuple(alternatives)),
+        penalty_values=PENALTY_VALUES[: draw(st.integers(2, 4))],
+    )
+    return Case(settings, states, problem, seed=draw(st.integers(0, 2**16)))
 
 
 @st.composite
 def runs(draw, max_episodes=12, max_steps=8):
-    """A problem and the calls of some episodes."""
-    problem = draw(problems())
+    """A case and the calls of some episodes."""
+    case = draw(cases())
+    problem = case.problem
     point = st.tuples(
         *[st.sampled_from(DISCRETE)] * problem.n_discrete,
-        *[st.sampled_from(CONTINUOUS)] * problem.n_continuous,
+        *[st.sampled_from(CONTINUOUS)] * len(problem.radii),
     ).map(np.array)
     points = draw(st.lists(point, min_size=1, max_size=5))
     ends = st.one_of(
@@ -101,7 +100,7 @@ def runs(draw, max_episodes=12, max_steps=8):
         ),
         st.tuples(
             st.just("penalise"),
-            st.tuples(st.integers(0, problem.n_penalties - 2)),
+            st.tuples(st.integers(0, len(problem.penalty_values) - 2)),
         ),
     )
     calls = []
@@ -118,18 +117,19 @@ def runs(draw, max_episodes=12, max_steps=8):
             calls.append(("finish_subtask", ()))
         calls.append(("finish_episode", ()))
         calls.append(("greedy", (draw(st.sampled_from(points)),)))
-    return problem, calls
+    return case, calls
 
 
-def seeded_calls(problem, rng, episodes=200, steps=12, n_points=7):
+def seeded_calls(case, rng, episodes=200, steps=12, n_points=7):
     """Calls of many episodes, a cheaper source than `runs`.
 
     The points follow one another with few exceptions, so that chains of states repeat;
     spells of failures alternate with spells of rewards, and one point is rare.
     """
+    problem = case.problem
     points = np.column_stack(
         [rng.choice(DISCRETE, n_points) for _ in range(problem.n_discrete)]
-        + [rng.choice(CONTINUOUS, n_points) for _ in range(problem.n_continuous)]
+        + [rng.choice(CONTINUOUS, n_points) for _ in range(len(problem.radii))]
     )
     rare = np.full(points.shape[1], DISCRETE[0])
     for episode in range(episodes):
@@ -140,7 +140,7 @@ def seeded_calls(problem, rng, episodes=200, steps=12, n_points=7):
             yield "choose", ()
             place = (place + (1 if rng.random() < 0.8 else 2)) % n_points
         if rng.random() < (0.9 if episode % 50 < 25 else 0.1):
-            yield "penalise", (int(rng.integers(problem.n_penalties - 1)),)
+            yield "penalise", (int(rng.integers(len(problem.penalty_values) - 1)),)
         else:
             value, counts = float(rng.choice(REWARDS)), bool(rng.random() < 0.7)
             yield "reward", (value, counts, episode >= 100)

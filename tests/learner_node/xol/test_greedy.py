@@ -12,9 +12,10 @@ from tests.learner_node.xol.lettered_states import (
     walk,
 )
 
+from learner_node.problem import ActionSpace, Problem
+from learner_node.states import StateSettings
 from learner_node.xol.agent import XolAgent
-from learner_node.xol.rules import ActionSpace
-from learner_node.xol.settings import StateSettings, XolSettings
+from learner_node.xol.settings import XolSettings
 
 
 def test_the_greedy_action_is_the_rewarded_one():
@@ -34,10 +35,9 @@ def test_an_agent_without_states_has_no_greedy_action():
 
 
 def test_a_partition_without_states_has_no_greedy_action():
-    settings = XolSettings(states=StateSettings(radii=(1.0,)))
-    agent = XolAgent(
-        settings, ActionSpace(1, 2), 1, 1, (1.0, 1.0), np.random.default_rng(0)
-    )
+    problem = Problem(1, (1.0,), ActionSpace((2,)), (1.0, 1.0))
+    rng = np.random.default_rng(0)
+    agent = XolAgent(XolSettings(), StateSettings(), problem, rng)
     agent.begin_episode(np.array([10.0, 0.0]))
     assert agent.greedy(np.array([-10.0, 0.0])) is None
 
@@ -76,9 +76,9 @@ def test_greedy_use_draws_no_random_number():
 
 @pytest.mark.parametrize("action", [(0, 0, 0), (2, 0, 1), (1, 2, 2)])
 def test_without_decomposition_joint_actions_are_learned(action):
-    settings = XolSettings(decomposed=False, states=StateSettings(radii=(1.0,)))
+    problem = Problem(0, (1.0,), ActionSpace((3, 3, 3)), (1.0, 1.0))
     rng = np.random.default_rng(0)
-    agent = XolAgent(settings, ActionSpace(3, 3), 0, 1, (1.0, 1.0), rng)
+    agent = XolAgent(XolSettings(decomposed=False), StateSettings(), problem, rng)
     while True:
         agent.begin_episode(at("A"))
         if tuple(agent.choose()) == action:

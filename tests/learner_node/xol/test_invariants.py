@@ -15,14 +15,14 @@ def call(agent, step):
 
 
 def rules_in_use(agent, name):
-    return getattr(agent.rules, name)[: agent.basis_states]
+    return getattr(agent.rules, name)[: agent.states.count]
 
 
 @each_run
 @given(run=runs())
 def test_a_normal_state_gets_no_penalty_sub_rule(run):
-    problem, calls = run
-    agent, rules = problem.learner(), problem.settings
+    case, calls = run
+    agent, rules = case.learner(), case.settings
     for step in calls:
         k = agent.state
         if step[0] == "choose":
@@ -40,8 +40,8 @@ def test_a_normal_state_gets_no_penalty_sub_rule(run):
 @each_run
 @given(run=runs())
 def test_eligibility_and_weights_are_never_negative(run):
-    problem, calls = run
-    agent = problem.learner()
+    case, calls = run
+    agent = case.learner()
     for step in calls:
         call(agent, step)
         for array in (agent.queue.eligibility, agent.rules.q, agent.rules.p):
@@ -51,8 +51,8 @@ def test_eligibility_and_weights_are_never_negative(run):
 @each_run
 @given(run=runs())
 def test_a_reward_adds_its_value_times_eligibility_to_normal_states_only(run):
-    problem, calls = run
-    agent = problem.learner()
+    case, calls = run
+    agent = case.learner()
     for step in calls:
         before = rules_in_use(agent, "q").copy()
         normal = ~rules_in_use(agent, "fixed")[:, None, None]
@@ -67,8 +67,8 @@ def test_a_reward_adds_its_value_times_eligibility_to_normal_states_only(run):
 @each_run
 @given(run=runs())
 def test_only_rewards_change_weights(run):
-    problem, calls = run
-    agent = problem.learner()
+    case, calls = run
+    agent = case.learner()
     for step in calls:
         before = rules_in_use(agent, "q").copy()
         call(agent, step)
@@ -80,8 +80,8 @@ def test_only_rewards_change_weights(run):
 @each_run
 @given(run=runs())
 def test_no_state_is_both_fixed_and_a_penalty_state(run):
-    problem, calls = run
-    agent = problem.learner()
+    case, calls = run
+    agent = case.learner()
     for step in calls:
         call(agent, step)
         both = rules_in_use(agent, "fixed") & rules_in_use(agent, "penalty_state")
@@ -91,8 +91,8 @@ def test_no_state_is_both_fixed_and_a_penalty_state(run):
 @each_run
 @given(run=runs())
 def test_a_sub_rule_fails_in_no_more_episodes_than_it_is_chosen_in(run):
-    problem, calls = run
-    agent = problem.learner()
+    case, calls = run
+    agent = case.learner()
     for step in calls:
         call(agent, step)
         n = rules_in_use(agent, "selections")
@@ -103,13 +103,13 @@ def test_a_sub_rule_fails_in_no_more_episodes_than_it_is_chosen_in(run):
 @each_run
 @given(run=runs())
 def test_forgetting_spares_rewarded_states(run):
-    problem, calls = run
-    agent = problem.learner()
+    case, calls = run
+    agent = case.learner()
     for step in calls:
         rewarded = rules_in_use(agent, "rewards") > 0
-        before = agent.states.centers[: agent.basis_states][rewarded].copy()
+        before = agent.states.centers[: agent.states.count][rewarded].copy()
         call(agent, step)
         if step[0] == "finish_episode":
             still = rules_in_use(agent, "rewards") > 0
-            after = agent.states.centers[: agent.basis_states][still]
+            after = agent.states.centers[: agent.states.count][still]
             assert np.array_equal(after, before)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from learner_node.problem import ActionSpace, Problem
+from learner_node.states import StateSettings
 from learner_node.xol.agent import XolAgent
-from learner_node.xol.rules import ActionSpace
-from learner_node.xol.settings import FixedModeSettings, StateSettings, XolSettings
+from learner_node.xol.settings import FixedModeSettings, XolSettings
 
 SIDE = 3.0
 MOST_DECISIONS = 12
@@ -91,15 +92,17 @@ def agent_for(ledge, seed=1, **changes):
         failure_threshold=changes.get("failure_threshold", 0.5),
         base_weight=1.0,
         decomposed=changes.get("decomposed", True),
-        states=StateSettings(basis=changes["basis"], radii=(0.7,) * ledge.n_components),
         fixed_mode=FixedModeSettings(rewards_to_fix=10),
     )
     return XolAgent(
         settings,
-        ActionSpace(ledge.n_components, ledge.n_alternatives),
-        ledge.n_lamps,
-        ledge.n_components,
-        PENALTY_VALUES,
+        StateSettings(basis=changes["basis"]),
+        Problem(
+            ledge.n_lamps,
+            (0.7,) * ledge.n_components,
+            ActionSpace((ledge.n_alternatives,) * ledge.n_components),
+            PENALTY_VALUES,
+        ),
         np.random.default_rng(seed),
     )
 

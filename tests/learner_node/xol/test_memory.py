@@ -13,8 +13,6 @@ from tests.learner_node.xol.lettered_states import (
 )
 from tests.learner_node.xol.random_episodes import runs
 
-from learner_node.xol.rules import ActionSpace
-
 NAMES = tuple(new_agent().memory())
 
 
@@ -69,8 +67,8 @@ def test_a_memory_replaces_all_that_was_known_before():
     agent = experienced_agent()
     restored.restore(agent.memory())
     rewarded_walk(restored, "W", "0", value=8.0)
-    assert restored.basis_states == agent.basis_states + 1
-    assert restored.rules.q[restored.basis_states - 1, 0].tolist() == [8, 0]
+    assert restored.states.count == agent.states.count + 1
+    assert restored.rules.q[restored.states.count - 1, 0].tolist() == [8, 0]
 
 
 def test_an_agent_restored_from_its_own_memory_is_the_same():
@@ -82,7 +80,7 @@ def test_an_agent_restored_from_its_own_memory_is_the_same():
 def test_the_memory_of_a_new_agent_can_be_restored():
     restored = experienced_agent()
     restored.restore(new_agent().memory())
-    assert restored.basis_states == 0
+    assert restored.states.count == 0
 
 
 # -- refusal --------------------------------------------------------------------------
@@ -136,7 +134,7 @@ def test_the_memory_of_another_action_space_is_refused(other, named):
 def test_a_memory_with_joint_rules_is_refused_where_sub_rules_are_learned():
     joint = new_agent(n_components=2, decomposed=False)
     joint.begin_episode(at("A"))
-    assert joint.space == ActionSpace(2, 2)
+    assert joint.rules.space.table_shape == (1, 4)
     with pytest.raises(ValueError, match="array q is"):
         new_agent(n_components=2).restore(joint.memory())
 

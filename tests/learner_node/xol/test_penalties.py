@@ -5,7 +5,6 @@ import pytest
 from tests.learner_node.xol.lettered_states import (
     NEVER,
     P_NP,
-    SETTINGS,
     at,
     failed_walk,
     failures_of,
@@ -21,8 +20,7 @@ from tests.learner_node.xol.lettered_states import (
     walk,
 )
 
-from learner_node.xol.agent import XolAgent
-from learner_node.xol.rules import ActionSpace
+from learner_node.problem import ActionSpace, Problem
 
 # -- who is a penalty sub-rule --------------------------------------------------------
 
@@ -316,6 +314,6 @@ def test_only_penalties_of_the_environment_can_be_given(penalty):
         agent.penalise(penalty)
 
 
-def test_an_agent_needs_one_penalty_and_the_additional_one():
+def test_a_problem_needs_one_penalty_and_the_additional_one():
     with pytest.raises(ValueError, match="penalty_values"):
-        XolAgent(SETTINGS, ActionSpace(1, 2), 0, 1, (1.0,), np.random.default_rng())
+        Problem(0, (1.0,), ActionSpace((2,)), (1.0,))

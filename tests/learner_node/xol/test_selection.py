@@ -25,6 +25,10 @@ def tables(q=None, p=None, avoided=None):
     return q[None, None], full_p[None, :, None], np.array(avoided)[None, None]
 
 
+def sizes_of(table):
+    return np.array([table.shape[-1]])
+
+
 def grid(parts, finer=10):
     """Draws that cover [0, 1) evenly, with `parts` * `finer` of them."""
     return (np.arange(parts * finer) + 0.5) / (parts * finer)
@@ -53,7 +57,7 @@ def ranked_shares(avoided, p=None, parts=1):
     _, p_table, avoided_table = tables(avoided=avoided, p=p)
 
     def choose(draws, chosen):
-        choose_ranked(0, draws, p_table, avoided_table, chosen)
+        choose_ranked(0, draws, p_table, avoided_table, sizes_of(p_table), chosen)
 
     return fractions(choose, grid(parts), len(avoided))
 
@@ -61,7 +65,7 @@ def ranked_shares(avoided, p=None, parts=1):
 def greedy_choice(**lists):
     q_table, p_table, avoided_table = tables(**lists)
     chosen = np.zeros(1, dtype=np.int64)
-    choose_greedy(0, q_table, p_table, avoided_table, chosen)
+    choose_greedy(0, q_table, p_table, avoided_table, sizes_of(q_table), chosen)
     return chosen[0]
 
 

@@ -17,10 +17,11 @@ from typing import Any
 
 import msgspec
 from mcap.records import Schema
+from mcap.well_known import SchemaEncoding
 from mcap_ros2.decoder import DecoderFactory
 
 from biped_bag.errors import BagError
-from biped_bag.reader import BagTopic
+from biped_bag.storage.contents import BagTopic
 from biped_common.timing import NS_PER_S
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
@@ -54,7 +55,7 @@ def row_maker(topic: BagTopic) -> Callable[[bytes], Row]:
     Raises:
         BagError: the topic's messages cannot be understood.
     """
-    schema = Schema(1, topic.definition.encode(), "ros2msg", topic.type_name)
+    schema = Schema(1, topic.definition.encode(), SchemaEncoding.ROS2, topic.type_name)
     try:
         decoder = DecoderFactory().decoder_for(topic.encoding, schema)
     except Exception as error:  # a definition can be wrong in any way

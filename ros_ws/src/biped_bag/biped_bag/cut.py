@@ -12,10 +12,12 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from biped_bag.copying import add_topic, new_bag, recorded, refuse_existing
 from biped_bag.errors import BagError
-from biped_bag.reader import BagMessage, BagReader
 from biped_bag.records import EPISODE_RECORD, RUN_RECORD
+from biped_bag.storage.contents import BagMessage
+from biped_bag.storage.layout import refuse_existing
+from biped_bag.storage.reader import BagReader
+from biped_bag.storage.writer import new_bag
 from biped_common.timing import NS_PER_S
 
 _MESSAGES_PER_FLUSH = 1000
@@ -68,11 +70,11 @@ def stretch_of_episodes(bag: BagReader, first: int, last: int) -> Stretch:
     ends: list[int] = []
     numbers: list[int] = []
     before_ns = bag.start_ns
-    for record in bag.metadata_records(EPISODE_RECORD):
+    for record in bag.records(EPISODE_RECORD):
         try:
-            number = int(record.values["episode"])
-            end_ns = int(record.values["last_log_time"])
-            start_ns = int(record.values["first_log_time"] or before_ns)
+            number = int(record.metadata["episode"])
+            end_ns = int(record.metadata["last_log_time"])
+            start_ns = int(record.metadata["first_log_time"] or before_ns)
         except (KeyError, ValueError):
             raise BagError(
                 f"{bag.path}: an {EPISODE_RECORD} record has no episode, "
@@ -106,43 +108,30 @@ def cut(
     Raises:
         BagError: a topic is not in the bag, or the output cannot be written.
     """
-    kept = chosen_topics(bag, topics)
+    kept = bag.chosen(topics)
     refuse_existing(out)
     latched = _latched_before(bag, kept, stretch.start_ns)
     count = 0
     with new_bag(out) as writer:
-        for record in bag.metadata_records():
+        for record in bag.records():
             if record.name == RUN_RECORD or (
-                record.name == EPISODE_RECORD and _ends_in(record.values, stretch)
+                record.name == EPISODE_RECORD and _ends_in(record.metadata, stretch)
             ):
-                writer.add_record(record.name, record.values)
+                writer.add_record(record.name, record.metadata)
         if stretch.start_ns <= bag.start_ns:
             for item in bag.attachments():
-                writer.attach(item.name, item.media_type, item.data, item.log_time)
+                writer.attach(item)
         for name in kept:
-            add_topic(writer, bag.topics[name])
+            writer.add_topic(bag.topics[name])
         for message in latched:
-            writer.write(recorded(message)._replace(log_ns=stretch.start_ns))
+            writer.write(message._replace(log_ns=stretch.start_ns))
         for message in bag.messages(kept, stretch.start_ns, stretch.end_ns):
-            writer.write(recorded(message))
+            writer.write(message)
             count += 1
             if count % _MESSAGES_PER_FLUSH == 0:
                 writer.flush()
         writer.close({"cut_from": bag.path.name})
     return Cut(count, len(latched))
-
-
-def chosen_topics(bag: BagReader, topics: Collection[str] | None) -> list[str]:
-    """Return the names of the topics that a user chose; all for None.
-
-    Raises:
-        BagError: one is not in the bag.
-    """
-    for name in topics or ():
-        if name not in bag.topics:
-            known = ", ".join(sorted(bag.topics))
-            raise BagError(f"{bag.path}: has no topic {name}; there: {known}")
-    return [name for name in bag.topics if topics is None or name in topics]
 
 
 def _latched_before(
@@ -154,7 +143,7 @@ def _latched_before(
     if names:
         for message in bag.messages(names, end_ns=start_ns):
             last[message.topic] = message
-    return sorted(last.values(), key=lambda message: message.log_time_ns)
+    return sorted(last.values(), key=lambda message: message.log_ns)
 
 
 def _ends_in(episode: dict[str, str], stretch: Stretch) -> bool:

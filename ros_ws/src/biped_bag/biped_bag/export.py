@@ -16,9 +16,8 @@ import pyarrow.csv  # type: ignore[import-untyped]
 import pyarrow.parquet  # type: ignore[import-untyped]
 
 from biped_bag.columns import Row, row_maker
-from biped_bag.cut import chosen_topics
 from biped_bag.errors import BagError
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
 from biped_common.atomic_file import atomic_file
 
 _ROWS_PER_BATCH = 10_000
@@ -75,7 +74,7 @@ def export(
     """
     files = {
         name: folder / f"{_file_stem(name)}.{form}"
-        for name in chosen_topics(bag, topics)
+        for name in bag.chosen(topics)
         if bag.topics[name].count
     }
     there = [file for file in files.values() if file.exists()]
@@ -111,8 +110,8 @@ def _batches(bag: BagReader, name: str) -> Iterator[dict[str, list[Any]]]:
         try:
             row = row_of(message.data)
         except Exception as error:  # bytes that are not of the type fail anyhow
-            raise _unreadable(bag, name, message.log_time_ns, error) from None
-        rows.append({"log_time_ns": message.log_time_ns, **row})
+            raise _unreadable(bag, name, message.log_ns, error) from None
+        rows.append({"log_time_ns": message.log_ns, **row})
         if len(rows) == _ROWS_PER_BATCH:
             yield _by_column(rows)
             rows = []

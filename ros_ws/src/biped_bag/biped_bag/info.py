@@ -7,8 +7,11 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from biped_bag.reader import BagReader, BagTopic, MetadataRecord
+from mcap.records import Metadata
+
 from biped_bag.records import EPISODE_RECORD, RUN_RECORD
+from biped_bag.storage.contents import BagTopic
+from biped_bag.storage.reader import BagReader
 from biped_common.timing import NS_PER_S
 
 _LABEL_WIDTH = 19
@@ -44,11 +47,11 @@ def info_text(bag: BagReader) -> str:
 
 def run_text(bag: BagReader) -> str:
     """Return what the bag tells of its run and its episodes; empty if nothing."""
-    run = next(bag.metadata_records(RUN_RECORD), None)
-    episodes = list(bag.metadata_records(EPISODE_RECORD))
+    run = next(bag.records(RUN_RECORD), None)
+    episodes = list(bag.records(EPISODE_RECORD))
     lines = [] if run is None else [_line("Run:", _summary_of_run(run))]
     if episodes:
-        causes = Counter(record.values.get("end_cause", "?") for record in episodes)
+        causes = Counter(record.metadata.get("end_cause", "?") for record in episodes)
         counts = ", ".join(f"{cause} {n}" for cause, n in causes.most_common())
         lines.append(_line("Episodes:", f"{len(episodes)} ({counts})"))
         if len(episodes) > _EPISODES_SHOWN:
@@ -79,8 +82,8 @@ def info_mapping(bag: BagReader) -> dict[str, Any]:
             }
             for topic in _sorted(bag)
         ],
-        "run": next((r.values for r in bag.metadata_records(RUN_RECORD)), None),
-        "episodes": [record.values for record in bag.metadata_records(EPISODE_RECORD)],
+        "run": next((r.metadata for r in bag.records(RUN_RECORD)), None),
+        "episodes": [record.metadata for record in bag.records(EPISODE_RECORD)],
         "attachments": [attachment.name for attachment in bag.attachments()],
     }
 
@@ -133,8 +136,8 @@ def _line(label: str, value: str) -> str:
     return f"{label:<{_LABEL_WIDTH}}{value}"
 
 
-def _summary_of_run(run: MetadataRecord) -> str:
-    values = run.values
+def _summary_of_run(run: Metadata) -> str:
+    values = run.metadata
     commit = values.get("git_commit", "")
     changed = ", with changes" if values.get("git_dirty") == "true" else ""
     git = f"commit {commit}{changed}" if commit else "not from a git checkout"
@@ -143,8 +146,8 @@ def _summary_of_run(run: MetadataRecord) -> str:
     return f"seed {values.get('seed', 'unknown')}{of_preset}, {git}"
 
 
-def _episode_text(record: MetadataRecord) -> str:
-    values = record.values
+def _episode_text(record: Metadata) -> str:
+    values = record.metadata
     return " | ".join(
         (
             f"Episode: {values.get('episode', '?')}",

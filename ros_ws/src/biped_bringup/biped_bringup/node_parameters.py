@@ -8,14 +8,11 @@ from typing import Any
 
 from biped_bringup.run_settings import RunSettings
 from biped_common.settings import to_mapping
-from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, microseconds
 from biped_ros.parameters import flattened
 from learner_node.settings import LearnerNodeSettings
+from msgs_json import topics
 from sim_node.settings import SimNodeSettings
 from trajectory_node.settings import TrajectorySettings
-
-LOOK_AHEAD_TICKS = 50
-"""Rows of a segment beyond its learning tick, for late peers in real time."""
 
 
 @dataclass(frozen=True)
@@ -29,9 +26,9 @@ class NodeParameters:
     def flat(self) -> dict[str, dict[str, Any]]:
         """Return the parameters by node and dotted name, as in parameter files."""
         return {
-            "sim_node": flattened(to_mapping(self.sim)),
-            "trajectory_node": flattened(to_mapping(self.trajectory)),
-            "learner_node": flattened(to_mapping(self.learner)),
+            topics.SIM_NODE: flattened(to_mapping(self.sim)),
+            topics.TRAJECTORY_NODE: flattened(to_mapping(self.trajectory)),
+            topics.LEARNER_NODE: flattened(to_mapping(self.learner)),
         }
 
 
@@ -39,14 +36,14 @@ def node_parameters(
     settings: RunSettings,
     seed: int,
     *,
-    checkpoint_file: str = "",
-    max_episodes: int = 0,
-    publish_every_ticks: int = 1,
-    pace: str = "lockstep",
-    frozen: bool = False,
-    timeout_s: float = 5.0,
-    listen_s: float = 1.5,
-    recorders: int = 0,
+    checkpoint_file: str = LearnerNodeSettings.checkpoint_file,
+    max_episodes: int = LearnerNodeSettings.max_episodes,
+    publish_every_ticks: int = SimNodeSettings.publish_every_ticks,
+    pace: str = SimNodeSettings.pace,
+    frozen: bool = LearnerNodeSettings.frozen,
+    timeout_s: float = SimNodeSettings.timeout_s,
+    listen_s: float = LearnerNodeSettings.listen_s,
+    recorders: int = SimNodeSettings.recorders,
 ) -> NodeParameters:
     """Return the settings of the three nodes.
 
@@ -62,30 +59,32 @@ def node_parameters(
         listen_s: how long the learner listens for another one first.
         recorders: for which the robot waits with its first walk.
     """
+    beside_learner = to_mapping(settings)
+    del beside_learner["learner"]
     return NodeParameters(
         sim=SimNodeSettings(
+            robot=settings.robot,
             sim=settings.sim,
             seed=seed,
-            segment_rows=TICKS_PER_LEARNING_TICK + LOOK_AHEAD_TICKS,
             publish_every_ticks=publish_every_ticks,
             pace=pace,
             timeout_s=timeout_s,
             recorders=recorders,
         ),
         trajectory=TrajectorySettings(
+            robot=settings.robot,
             gait=settings.gait,
             correction=settings.correction,
             correction_limit_m=settings.learner.action.limit_m,
-            look_ahead_ticks=LOOK_AHEAD_TICKS,
         ),
         learner=LearnerNodeSettings(
             learner=settings.learner,
             seed=seed,
-            walk_ticks=microseconds(settings.gait.duration_s) // CONTROL_PERIOD_US,
+            walk_ticks=settings.gait.walk_ticks,
             checkpoint_file=checkpoint_file,
             max_episodes=max_episodes,
             frozen=frozen,
             listen_s=listen_s,
-            run_settings=json.dumps(to_mapping(settings)),
+            run_settings=json.dumps(beside_learner),
         ),
     )

@@ -111,7 +111,6 @@ class ReplayingWalker(Walker):
 
     def walk(self, responder: Responder) -> EpisodeResult:
         """Walk until the responder gives a result."""
-        self.biped.world.check_open()
         self._walks += 1
         self._begun_ticks = self._clock_ticks + 1
         if self._root is None:

@@ -11,12 +11,15 @@ from typing import Any
 import yaml
 
 from biped_common.settings import (
+    Settings,
     SettingsError,
     from_mapping,
+    nested,
     overlay,
     section,
     to_mapping,
 )
+from biped_description.settings import RobotSettings
 from learner_node.walking.settings import LearnerSettings
 from sim_node.settings import SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
@@ -26,15 +29,16 @@ DEFAULT_PRESET = "paper"
 
 
 @dataclass(frozen=True)
-class RunSettings:
-    """Gait, correction, robot and learner."""
+class RunSettings(Settings):
+    """Robot, gait, correction, simulation and learner."""
 
+    robot: RobotSettings = section(RobotSettings)
     gait: GaitSettings = section(GaitSettings)
     correction: CorrectionSettings = section(CorrectionSettings)
     sim: SimSettings = section(SimSettings)
     learner: LearnerSettings = section(LearnerSettings)
 
-    def __post_init__(self) -> None:
+    def check_together(self) -> None:
         """Refuse combinations that no part can see alone."""
         first = self.learner.schedule.first_target_s
         if first > self.gait.duration_s:
@@ -114,10 +118,7 @@ def _change(text: str) -> dict[str, Any]:
     if not separator or not key:
         raise SettingsError("--set", text, "must have the form section.key=value")
     try:
-        nested: Any = yaml.safe_load(value)
+        return nested(key, yaml.safe_load(value))
     except (yaml.YAMLError, ValueError):
         # Dates that do not exist and endless numbers are ValueErrors.
         raise SettingsError("--set", text, "the value is not YAML") from None
-    for part in reversed(key.split(".")):
-        nested = {part: nested}
-    return dict(nested)

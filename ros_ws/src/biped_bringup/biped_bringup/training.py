@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from importlib.metadata import version
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,6 @@ from biped_common.settings import from_mapping, to_mapping
 from biped_common.timing import seconds
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from learner_node.walking.episode_log import EpisodeLog
-from learner_node.walking.learner import WalkLearner
 from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
 
@@ -73,11 +73,6 @@ class TrainingRun:
         ]
 
     # -- learning ------------------------------------------------------------------
-
-    @property
-    def learner(self) -> WalkLearner:
-        """The learner of the session."""
-        return self.session.learner
 
     @property
     def tally(self) -> Tally:
@@ -189,11 +184,12 @@ class TrainingRun:
 
     def summary(self, memory_file: Path) -> dict[str, Any]:
         """Return the run's figures, for people and scripts."""
-        agent, tally = self.learner.agent, self.tally
+        session, tally = self.session, self.tally
+        schedule = session.task.schedule
         return {
             "completed": self.learned,
-            "schedule_complete": self.learner.schedule.complete,
-            "target_time_s": seconds(self.learner.schedule.target_ticks),
+            "schedule_complete": schedule.complete,
+            "target_time_s": seconds(schedule.target_ticks),
             "episodes": self.episodes,
             "schedule_episodes": tally.schedule_episodes,
             "greedy_episodes": tally.greedy_episodes,
@@ -204,15 +200,17 @@ class TrainingRun:
             "computed_ticks": self.walker.ticks.computed,
             "replayed_ticks": self.walker.ticks.replayed,
             "cpu_s": round(self.cpu_s, 3),
-            "basis_states": agent.basis_states,
-            "fixed_states": agent.fixed_states,
-            "penalty_states": agent.penalty_states,
+            "figures": session.learner.figures(),
             "seed": self.seed,
-            "memory_sha256": self.learner.memory_sha256(),
+            "memory_sha256": session.memory_sha256(),
             "trajectory_sha256": tally.trajectories_sha256,
             "memory_file": str(memory_file),
         }
 
 
 def _versions() -> dict[str, str]:
-    return {name: version(name) for name in _PACKAGES}
+    found = {}
+    for name in _PACKAGES:
+        with suppress(PackageNotFoundError):  # an engine that is not used here
+            found[name] = version(name)
+    return found

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_bringup.run_settings import RunSettings
+from biped_description.robot import Robot
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.biped import SimulatedBiped
@@ -55,8 +56,11 @@ class Walker:
             rng: source of the disturbances.
             on_tick: called after every control tick.
         """
-        self.reference = WaistReference(settings.gait, settings.correction)
-        self.biped = SimulatedBiped(settings.sim, self.reference.stance(), rng, on_tick)
+        robot = Robot(settings.robot)
+        self.reference = WaistReference(robot, settings.gait, settings.correction)
+        self.biped = SimulatedBiped(
+            robot, settings.sim, self.reference.stance(), rng, on_tick
+        )
         self.ticks = WalkedTicks()
         self._walks = 0
 

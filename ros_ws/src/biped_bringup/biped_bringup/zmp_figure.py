@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from biped_common.timing import CONTROL_PERIOD_S
-from biped_description.dimensions import BIPED
+from biped_description.settings import RobotSettings
 from sim_node.control_tick import ControlTick
 from sim_node.settings import LimitSettings
 from trajectory_node.gait import GaitPlan
@@ -34,13 +34,18 @@ class ZmpTrace:
 
 
 def draw_zmp(
-    trace: ZmpTrace, plan: GaitPlan, limits: LimitSettings, path: Path
+    trace: ZmpTrace,
+    plan: GaitPlan,
+    robot: RobotSettings,
+    limits: LimitSettings,
+    path: Path,
 ) -> None:
     """Draw the walk from above, its ZMP over time, and the ZMP error with its limit.
 
     Args:
         trace: of the walk.
         plan: what it should have been.
+        robot: dimensions of its soles.
         limits: the failure limit drawn.
         path: the picture; its suffix gives the format.
     """
@@ -55,9 +60,9 @@ def draw_zmp(
     for x, y in _footholds(plan):
         above.add_patch(
             Rectangle(
-                (x + BIPED.sole_ahead_of_ankle - BIPED.sole.length_x / 2,
-                 y - BIPED.sole.length_y / 2),
-                BIPED.sole.length_x, BIPED.sole.length_y,
+                (x + robot.sole_ahead_of_ankle_m - robot.sole_length_m / 2,
+                 y - robot.sole_width_m / 2),
+                robot.sole_length_m, robot.sole_width_m,
                 facecolor=_SHADE, edgecolor="#8899aa", linewidth=0.8,
             )
         )  # fmt: skip

@@ -8,13 +8,31 @@ files, `biped check`, `--set key=value`, and ROS parameter descriptors.
 from __future__ import annotations
 
 import dataclasses
-import math
-from collections.abc import Mapping
-from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    NamedTuple,
+    TypeVar,
+    final,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+import msgspec
+from msgspec import Meta
 
 from biped_common.errors import BipedError
 
-Settings = TypeVar("Settings")
+AnySettings = TypeVar("AnySettings", bound="Settings")
+Content = TypeVar("Content")
+_SECTION = "must be a section of keys"
+_NOUNS = {int: "a whole number", bool: "true or false", str: "text"}
+_WITHOUT_DOT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
 
 
 class SettingsError(BipedError, ValueError):
@@ -32,8 +50,7 @@ class SettingsError(BipedError, ValueError):
 
     def under(self, section: str) -> SettingsError:
         """Return the same error with its key prefixed by the enclosing section."""
-        key = f"{section}.{self.key}" if section else self.key
-        return SettingsError(key, self.value, self.allowed)
+        return SettingsError(f"{section}.{self.key}", self.value, self.allowed)
 
 
 def _shown(value: object) -> str:
@@ -41,6 +58,26 @@ def _shown(value: object) -> str:
         return repr(value)
     except ValueError:
         return "a whole number of thousands of digits"  # which Python does not write
+
+
+# -- declaring -------------------------------------------------------------------------
+
+
+class Settings:
+    """Base of every frozen dataclass of settings: no unsound object can be made."""
+
+    @final
+    def __post_init__(self) -> None:
+        """Refuse values of the wrong type, out of range or at odds with one another."""
+        check_ranges(self)
+        self.check_together()
+
+    def check_together(self) -> None:
+        """Refuse values that are at odds with one another; classes override it.
+
+        Raises:
+            SettingsError: naming one of the keys, its value and what is allowed.
+        """
 
 
 def setting(
@@ -78,14 +115,103 @@ def setting(
     return dataclasses.field(default=default, metadata=metadata)
 
 
-def section(cls: type[Settings]) -> Settings:
+def section(cls: type[AnySettings]) -> AnySettings:
     """Declare a nested settings dataclass with its own defaults."""
     return dataclasses.field(default_factory=cls)
 
 
+class Declaration(NamedTuple):
+    """What is declared of one field."""
+
+    kind: Any
+    """Its type; that of a section is a settings dataclass."""
+    rules: Mapping[str, Any]
+    """The arguments of `setting`; empty for a section."""
+
+    @property
+    def is_section(self) -> bool:
+        """Whether it holds settings itself."""
+        return dataclasses.is_dataclass(self.kind)
+
+
+def declarations(cls: type[Any]) -> dict[str, Declaration]:
+    """Return what a settings dataclass declares, by name of the field."""
+    hints = get_type_hints(cls)
+    return {
+        f.name: Declaration(hints[f.name], f.metadata) for f in dataclasses.fields(cls)
+    }
+
+
+def _forms(kind: Any, rules: Mapping[str, Any]) -> Iterator[tuple[Any, str]]:
+    """Yield the types that a value must fit, one narrower than the other, and words.
+
+    The types are msgspec's; the words say what is allowed.
+    """
+    if get_origin(kind) is tuple:
+        several: Any = tuple
+        element = get_args(kind)[0]
+        yield several[Any, ...], f"must be a list of {element.__name__}"
+        for form, allowed in _forms(element, rules):
+            yield several[form, ...], allowed
+        return
+    if kind is float:
+        largest = sys.float_info.max
+        yield int | float, "must be a number"
+        yield Annotated[float, Meta(ge=-largest, le=largest)], "must be a finite number"
+    else:
+        yield kind, f"must be {_NOUNS[kind]}"
+    unit = f" {rules['unit']}" if rules["unit"] else ""
+    lower, upper, above = rules["lower"], rules["upper"], rules["above"]
+    if rules["choices"] is not None:
+        words = ", ".join(rules["choices"])
+        yield Literal[rules["choices"]], f"must be one of {words}"
+    if above is not None:
+        yield Annotated[kind, Meta(gt=above)], f"must be above {above}{unit}"
+    if lower is not None and upper is not None:
+        allowed = f"must be between {lower} and {upper}{unit}"
+        yield Annotated[kind, Meta(ge=lower, le=upper)], allowed
+    elif lower is not None:
+        yield Annotated[kind, Meta(ge=lower)], f"must be at least {lower}{unit}"
+    elif upper is not None:
+        yield Annotated[kind, Meta(le=upper)], f"must be at most {upper}{unit}"
+
+
+# -- checking --------------------------------------------------------------------------
+
+
+def check_ranges(settings: Any) -> None:
+    """Check every field of a settings object against its declaration.
+
+    A whole number becomes a float, and a list a tuple, where such is declared.
+
+    Raises:
+        SettingsError: naming the key, the value and what is allowed.
+    """
+    for name, declared in declarations(type(settings)).items():
+        if declared.is_section:
+            continue
+        value = getattr(settings, name)
+        for form, allowed in _forms(declared.kind, declared.rules):
+            try:
+                value = msgspec.convert(value, form)
+            except msgspec.ValidationError:
+                raise SettingsError(name, value, allowed + _hint(value)) from None
+        object.__setattr__(settings, name, value)
+
+
+def _hint(value: object) -> str:
+    # YAML 1.1 reads 1e-3 as text: the commonest surprise deserves its own word.
+    if isinstance(value, str) and _WITHOUT_DOT.fullmatch(value):
+        return " (YAML wants a dot in the mantissa, as in 1.0e-3)"
+    return ""
+
+
+# -- mappings --------------------------------------------------------------------------
+
+
 def from_mapping(
-    cls: type[Settings], values: Mapping[str, Any], base: Settings | None = None
-) -> Settings:
+    cls: type[AnySettings], values: Mapping[str, Any], base: AnySettings | None = None
+) -> AnySettings:
     """Build the settings dataclass `cls` from a mapping, strictly.
 
     Args:
@@ -97,39 +223,49 @@ def from_mapping(
         SettingsError: unknown key, wrong type, non-finite or out-of-range value.
     """
     if not isinstance(values, Mapping):
-        raise SettingsError("settings", values, "must be a section of keys")
-    fields = {f.name: f for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
-    hints = get_type_hints(cls)
-    arguments: dict[str, Any] = (
-        {name: getattr(base, name) for name in fields} if base is not None else {}
-    )
+        raise SettingsError("settings", values, _SECTION)
+    if base is not None:
+        values = overlay(to_mapping(base), values)
+    known = declarations(cls)
+    arguments = dict(values)
     for key, value in values.items():
-        if key not in fields:
-            known = ", ".join(sorted(fields))
-            raise SettingsError(str(key), value, f"unknown key; known here: {known}")
-        kind: Any = hints[key]
-        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+        if key not in known:
+            names = ", ".join(sorted(known))
+            raise SettingsError(str(key), value, f"unknown key; known here: {names}")
+        if known[key].is_section:
             if not isinstance(value, Mapping):
-                raise SettingsError(key, value, "must be a section of keys")
+                raise SettingsError(key, value, _SECTION)
             try:
-                arguments[key] = from_mapping(kind, value, arguments.get(key))
+                arguments[key] = from_mapping(known[key].kind, value)
             except SettingsError as error:
                 raise error.under(key) from None
-        else:
-            arguments[key] = _converted(key, value, kind, fields[key])
     return cls(**arguments)
+
+
+def from_json(key: str, text: str, kind: type[Content]) -> Content:
+    """Return what a setting that is JSON text holds: a tree that no one here declares.
+
+    Args:
+        key: of the setting.
+        text: its value.
+        kind: what it must hold, such as dict[str, str].
+
+    Raises:
+        SettingsError: it holds something else.
+    """
+    try:
+        return msgspec.json.decode(text, type=kind)
+    except msgspec.DecodeError as error:
+        raise SettingsError(key, text, f"is not the JSON it must be, {error}") from None
 
 
 def to_mapping(settings: Any) -> dict[str, Any]:
     """Return nested plain values (lists, not tuples), the inverse of `from_mapping`."""
-    result: dict[str, Any] = {}
-    for f in dataclasses.fields(settings):
-        value = getattr(settings, f.name)
-        if dataclasses.is_dataclass(value):
-            result[f.name] = to_mapping(value)
-        else:
-            result[f.name] = list(value) if isinstance(value, tuple) else value
-    return result
+    return dataclasses.asdict(settings, dict_factory=_plain)
+
+
+def _plain(fields: list[tuple[str, Any]]) -> dict[str, Any]:
+    return {k: list(v) if isinstance(v, tuple) else v for k, v in fields}
 
 
 def overlay(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -144,74 +280,7 @@ def overlay(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, An
     return merged
 
 
-def check_ranges(settings: Any) -> None:
-    """Check every field of a settings object against its declaration.
-
-    Called from the `__post_init__` of each settings dataclass, so that an invalid
-    object cannot be made in code either.
-
-    Raises:
-        SettingsError: naming the key, the value and what is allowed.
-    """
-    hints = get_type_hints(type(settings))
-    for f in dataclasses.fields(settings):
-        if "unit" in f.metadata:
-            value = getattr(settings, f.name)
-            _converted(f.name, value, hints[f.name], f)
-            _check_range(f.name, value, f)
-
-
-def _converted(key: str, value: Any, kind: Any, field: dataclasses.Field[Any]) -> Any:
-    if get_origin(kind) is tuple:
-        element = get_args(kind)[0]
-        if not isinstance(value, (list, tuple)):
-            raise SettingsError(key, value, f"must be a list of {element.__name__}")
-        return tuple(_converted(key, v, element, field) for v in value)
-    if isinstance(value, bool) != (kind is bool):
-        raise SettingsError(key, value, f"must be {_NOUNS[kind]}")
-    if kind is float and isinstance(value, int):
-        try:
-            return float(value)
-        except OverflowError:
-            raise SettingsError(key, value, "is too large a number") from None
-    if not isinstance(value, kind):
-        raise SettingsError(key, value, f"must be {_NOUNS[kind]}{_hint(value)}")
-    return value
-
-
-_NOUNS = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}
-
-
-def _hint(value: object) -> str:
-    # YAML 1.1 reads 1e-3 as text: the commonest surprise deserves its own word.
-    if isinstance(value, str):
-        try:
-            float(value)
-        except ValueError:
-            return ""
-        return " (YAML wants a dot in the mantissa, as in 1.0e-3)"
-    return ""
-
-
-def _check_range(key: str, value: Any, field: dataclasses.Field[Any]) -> None:
-    if isinstance(value, tuple):
-        for element in value:
-            _check_range(key, element, field)
-        return
-    rules = field.metadata
-    unit = f" {rules['unit']}" if rules["unit"] else ""
-    if isinstance(value, float) and not math.isfinite(value):
-        raise SettingsError(key, value, "must be a finite number")
-    if rules["choices"] is not None and value not in rules["choices"]:
-        raise SettingsError(key, value, f"must be one of {', '.join(rules['choices'])}")
-    if rules["above"] is not None and value <= rules["above"]:
-        raise SettingsError(key, value, f"must be above {rules['above']}{unit}")
-    lower, upper = rules["lower"], rules["upper"]
-    if (lower is not None and value < lower) or (upper is not None and value > upper):
-        if lower is None:
-            allowed = f"must be at most {upper}{unit}"
-        elif upper is None:
-            allowed = f"must be at least {lower}{unit}"
-        else:
-            allowed = f"must be between {lower} and {upper}{unit}"
-        raise SettingsError(key, value, allowed)
+def nested(key: str, value: Any) -> dict[str, Any]:
+    """Return the mapping in which the dotted key has this value, and nothing else."""
+    first, dot, rest = key.partition(".")
+    return {first: nested(rest, value) if dot else value}

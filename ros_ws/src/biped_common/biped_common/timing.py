@@ -15,6 +15,11 @@ def seconds(control_ticks: int) -> float:
     return control_ticks * CONTROL_PERIOD_US * 1e-6
 
 
+def control_ticks(duration_s: float) -> int:
+    """Return how many whole control ticks a duration has."""
+    return microseconds(duration_s) // CONTROL_PERIOD_US
+
+
 def microseconds(duration_s: float) -> int:
     """Return a duration in whole microseconds, in which events are compared."""
     return round(duration_s * 1e6)

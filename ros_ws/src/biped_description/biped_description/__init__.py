@@ -1,15 +1,17 @@
-"""The biped: its dimensions, joints, links, kinematics and URDF.
+"""The biped: its table of dimensions, and the kinematics and URDF that follow from it.
 
 World frame: x forward, y left, z up, origin on the floor midway between the feet at
 the start. The *waist* is the midpoint of the line through the hip joints. A *foot* is
 the point of the sole's plane under the ankle, so that its height is zero on the floor.
 
-Import from the modules, each of which holds one concept::
+The kinematic structure is fixed: a torso on two legs of six joints. All else is a
+table, ``settings.RobotSettings``; the ``robot.Robot`` made of it is passed to whoever
+needs it. Import from the modules, each of which holds one concept::
 
-    dimensions   lengths and masses of the robot, the constant ``BIPED``
-    joints       names, position limits and torque limits of the twelve joints
-    links        names, masses, mass centres and inertias of the thirteen links
-    kinematics   inverse kinematics, forward kinematics, centre of mass
-    urdf         the URDF file, generated from the tables above
+    settings     the table of a robot: dimensions, masses, limits
+    robot        the robot that a table makes: limits, masses, kinematics, URDF
+    joints       names, order and axes of the twelve joints
+    links        names of the thirteen links; their mass properties by the table
+    urdf         the URDF by the table
     errors       what the functions raise
 """

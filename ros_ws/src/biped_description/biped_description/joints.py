@@ -1,4 +1,4 @@
-"""The twelve joints: names, order, axes and limits.
+"""The twelve joints: names, order and axes, the same for a robot of any size.
 
 Every array of joint quantities in the project has this order: left leg, then right,
 each from the hip down. Joint positions are zero when the robot stands straight, and
@@ -8,11 +8,7 @@ positive and a thigh swung forward has a negative hip pitch.
 
 from typing import Final, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 LEGS: Final = ("left", "right")
-JOINTS_PER_LEG: Final = 6
 
 
 class LegJoint(NamedTuple):
@@ -20,37 +16,19 @@ class LegJoint(NamedTuple):
 
     name: str
     axis: tuple[int, int, int]  # in the frame of the parent link
-    position_lower: float  # [rad]
-    position_upper: float  # [rad]
-    torque_limit: float  # [N m]
 
 
 LEG_JOINTS: Final = (
-    LegJoint("hip_yaw", (0, 0, 1), -0.8, 0.8, 40.0),
-    LegJoint("hip_roll", (1, 0, 0), -0.6, 0.6, 80.0),
-    LegJoint("hip_pitch", (0, 1, 0), -1.6, 0.8, 80.0),
-    LegJoint("knee", (0, 1, 0), 0.0, 2.2, 100.0),
-    LegJoint("ankle_pitch", (0, 1, 0), -1.2, 1.2, 80.0),
-    LegJoint("ankle_roll", (1, 0, 0), -0.6, 0.6, 60.0),
+    LegJoint("hip_yaw", (0, 0, 1)),
+    LegJoint("hip_roll", (1, 0, 0)),
+    LegJoint("hip_pitch", (0, 1, 0)),
+    LegJoint("knee", (0, 1, 0)),
+    LegJoint("ankle_pitch", (0, 1, 0)),
+    LegJoint("ankle_roll", (1, 0, 0)),
 )
+JOINTS_PER_LEG: Final = len(LEG_JOINTS)
 
 # Index of a joint within its leg.
 HIP_YAW, HIP_ROLL, HIP_PITCH, KNEE, ANKLE_PITCH, ANKLE_ROLL = range(JOINTS_PER_LEG)
 
-
-def _both_legs(values: list[float]) -> NDArray[np.float64]:
-    """Repeat the six values of a leg for both legs, in a read-only array."""
-    array = np.array(2 * values, dtype=np.float64)
-    array.flags.writeable = False
-    return array
-
-
 JOINT_NAMES: Final = tuple(f"{leg}_{each.name}" for leg in LEGS for each in LEG_JOINTS)
-
-# (12,) limits of joint positions [rad] and torques [N m], in the order of JOINT_NAMES.
-POSITION_LOWER: Final = _both_legs([each.position_lower for each in LEG_JOINTS])
-POSITION_UPPER: Final = _both_legs([each.position_upper for each in LEG_JOINTS])
-TORQUE_LIMIT: Final = _both_legs([each.torque_limit for each in LEG_JOINTS])
-
-# Limit of every joint's velocity [rad/s], 600 revolutions per minute.
-VELOCITY_LIMIT: Final = 20.0 * np.pi

@@ -1,1 +1,9 @@
-"""Experiments, baselines, other tasks and figures."""
+"""The laboratory: Gymnasium environments, learners on other tasks, studies.
+
+Gymnasium finds no environments by entry points any more (since its version 1.0): this
+import registers ours, and `gymnasium.make("biped_lab:BipedWaist-v0")` does both.
+"""
+
+import gymnasium
+
+gymnasium.register(id="BipedWaist-v0", entry_point="biped_lab.waist_env:BipedWaistEnv")

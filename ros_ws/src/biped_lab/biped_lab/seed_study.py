@@ -115,7 +115,7 @@ def _row(run: dict[str, Any]) -> str:
         f"  schedule {run['schedule_episodes'] or '-':>5}"
         f"  greedy {run['greedy_episodes'] or '-':>5}  episodes {run['episodes']:5d}"
         f"  simulated {run['simulated_s']:7.0f} s  CPU {run['cpu_s']:5.0f} s"
-        f"  states {run['basis_states']}/{run['fixed_states']}/{run['penalty_states']}"
+        f"  states {run['figures']}"
         f" walk {walk['control_ticks']} ticks,"
         f" {1000 * walk['peak_zmp_error_m']:.1f} mm"
     )

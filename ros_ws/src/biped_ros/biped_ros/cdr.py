@@ -97,6 +97,10 @@ class MessageTemplate:
         self._pattern = np.frombuffer(self._bytes, dtype=np.uint8)[self._fixed]
         return self
 
+    def __len__(self) -> int:
+        """Return the size of the message in bytes."""
+        return len(self._bytes)
+
     def _align(self, size: int) -> None:
         # Other writers leave anything in the padding.
         padding = -(len(self._bytes) - _ENCAPSULATION) % size

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,22 +13,14 @@ from rclpy.serialization import deserialize_message
 from biped_common.timing import CONTROL_PERIOD_US
 from biped_ros.cdr import MessageTemplate, read_stamp
 from msgs_json.segment import WaistSegment
-from msgs_json.wire import MalformedMessageError, RefusedMessageError
+from msgs_json.wire import MalformedMessageError
 
 WORLD_FRAME = "world"
-# One transform each per control tick; only translations are used. `phase` holds flags:
-# x 1 = right support leg, y 1 = double support, z = single supports begun. `extent`
-# is the same in all rows: x = first control tick of the walk, y = ticks to be walked
-# before the next observation; rows beyond them are look-ahead.
-SEGMENT_PARTS = (
-    "waist",
-    "left_foot",
-    "right_foot",
-    "zmp_reference",
-    "phase",
-    "extent",
-)
+# One transform each per control tick, never turned against the world.
+SEGMENT_FRAMES = ("waist", "left_foot", "right_foot", "zmp_reference")
 _AXES = 3
+_LENGTH = struct.Struct("<I")  # of a sequence
+_TRANSFORM_BYTES = 7 * 8
 _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 
 
@@ -54,14 +47,14 @@ def point_template() -> MessageTemplate:
     return template.value().value().constant(0.0).finished()
 
 
-def correction_template(learner: str) -> MessageTemplate:
-    """Return a correction (dx, dy) of the learner of this name."""
-    template = MessageTemplate(stamped=True).text(learner)
+def correction_template() -> MessageTemplate:
+    """Return a correction: dx and dy."""
+    template = MessageTemplate(stamped=True).text(WORLD_FRAME)
     return template.value().value().constant(0.0).finished()
 
 
 def correction_of(message: bytes) -> tuple[str, int, NDArray[np.float64]]:
-    """Return learner, clock ticks and (dx, dy) [m] of a correction.
+    """Return frame, clock ticks and (dx, dy) [m] of a correction.
 
     Raises:
         MalformedMessageError: not a correction, or its time lies between two ticks.
@@ -80,13 +73,13 @@ def correction_of(message: bytes) -> tuple[str, int, NDArray[np.float64]]:
 def segment_template(rows: int) -> MessageTemplate:
     """Return a waist segment of so many control ticks."""
     template = MessageTemplate(stamped=True).text(WORLD_FRAME)
-    template.integer(len(SEGMENT_PARTS))
-    for part in SEGMENT_PARTS:
-        template.text(part)
+    template.integer(len(SEGMENT_FRAMES))
+    for frame in SEGMENT_FRAMES:
+        template.text(frame)
     template.integer(rows)
     for row in range(rows):
-        template.integer(len(SEGMENT_PARTS))
-        for _ in SEGMENT_PARTS:
+        template.integer(len(SEGMENT_FRAMES))
+        for _ in SEGMENT_FRAMES:
             template.value().value().value()
             for component in _NO_ROTATION:
                 template.constant(component)
@@ -96,44 +89,41 @@ def segment_template(rows: int) -> MessageTemplate:
     return template.finished()
 
 
+class SegmentReader:
+    """Reads waist segments of any number of control ticks."""
+
+    def __init__(self) -> None:
+        """Read nothing yet."""
+        self._template = segment_template(rows=0)
+        self._at_length = len(self._template) - _LENGTH.size
+        self._rows = 0
+
+    def read(self, message: bytes) -> tuple[NDArray[np.float64], int]:
+        """Return the (rows, frames, 3) positions [m] of a segment, and its clock ticks.
+
+        Raises:
+            MalformedMessageError: not a segment of this form.
+        """
+        if len(message) < self._at_length + _LENGTH.size:
+            raise MalformedMessageError("not a waist reference")
+        (rows,) = _LENGTH.unpack_from(message, self._at_length)
+        # A template is made of no more rows than there are.
+        if not 0 < rows * len(SEGMENT_FRAMES) * _TRANSFORM_BYTES <= len(message):
+            raise MalformedMessageError(f"not a waist reference of {rows} rows")
+        if rows != self._rows:
+            self._template, self._rows = segment_template(rows), rows
+        read = self._template.read(message)
+        if read is None:
+            raise MalformedMessageError(f"not a waist reference of {rows} rows")
+        values, clock_ticks = read
+        return values.reshape(rows, len(SEGMENT_FRAMES), _AXES), clock_ticks
+
+
 def segment_values(segment: WaistSegment) -> NDArray[np.float64]:
-    """Return the (rows, parts, 3) numbers of a segment's message."""
-    values = np.zeros((len(segment.waist), len(SEGMENT_PARTS), _AXES))
+    """Return the (rows, frames, 3) positions of a segment's message [m]."""
+    values = np.zeros((len(segment.waist), len(SEGMENT_FRAMES), _AXES))
     values[:, 0] = segment.waist
     values[:, 1] = segment.left_foot
     values[:, 2] = segment.right_foot
     values[:, 3, :2] = segment.zmp_reference
-    values[:, 4, 0] = segment.right_support
-    values[:, 4, 1] = segment.double_support
-    values[:, 4, 2] = segment.step_index
-    values[:, 5, 0] = segment.first_tick
-    values[:, 5, 1] = segment.n_ticks
     return values
-
-
-def segment_of(values: NDArray[np.float64]) -> WaistSegment:
-    """Return the segment of a message's numbers, the inverse of `segment_values`.
-
-    Raises:
-        RefusedMessageError: a number is not finite, or the extent makes no sense.
-    """
-    if not np.isfinite(values).all():
-        raise RefusedMessageError("segment with a number that is not finite")
-    cells = values.reshape(-1, len(SEGMENT_PARTS), _AXES)
-    first_tick, n_ticks = (int(n) for n in cells[0, 5, :2])
-    if first_tick < 0 or not 0 <= n_ticks < len(cells) + (n_ticks == 0):
-        raise RefusedMessageError(
-            f"segment of {len(cells)} rows from tick {first_tick}: "
-            f"{n_ticks} ticks cannot be walked on it"
-        )
-    return WaistSegment(
-        first_tick=first_tick,
-        n_ticks=n_ticks,
-        waist=np.ascontiguousarray(cells[:, 0]),
-        left_foot=np.ascontiguousarray(cells[:, 1]),
-        right_foot=np.ascontiguousarray(cells[:, 2]),
-        zmp_reference=np.ascontiguousarray(cells[:, 3, :2]),
-        right_support=cells[:, 4, 0] == 1.0,
-        double_support=cells[:, 4, 1] == 1.0,
-        step_index=cells[:, 4, 2].astype(np.int64),
-    )

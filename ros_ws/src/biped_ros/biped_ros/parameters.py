@@ -7,23 +7,34 @@ a command line gives must be known, of the right type and in range. Afterwards o
 
 from __future__ import annotations
 
-import dataclasses
+import sys
 from array import array
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, TypeVar, get_type_hints
+from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from biped_common.settings import SettingsError, from_mapping, overlay, to_mapping
+from biped_common.settings import (
+    AnySettings,
+    Declaration,
+    SettingsError,
+    declarations,
+    from_mapping,
+    nested,
+    overlay,
+    to_mapping,
+)
 
-Settings = TypeVar("Settings")
-_LARGEST_INTEGER = 2**63 - 1
-_LARGEST_FLOAT = 1.7976931348623157e308
+# Descriptor field, message and largest number of a range, by type of the setting.
+_RANGES: dict[type, tuple[str, Any, float]] = {
+    float: ("floating_point_range", FloatingPointRange, sys.float_info.max),
+    int: ("integer_range", IntegerRange, 2**63 - 1),
+}
 
 
-def declared_settings(node: Node, cls: type[Settings]) -> Settings:
+def declared_settings(node: Node, cls: type[AnySettings]) -> AnySettings:
     """Declare a settings dataclass as parameters; return it with the values given.
 
     Raises:
@@ -33,18 +44,20 @@ def declared_settings(node: Node, cls: type[Settings]) -> Settings:
     # rclpy tells of parameters that nobody declared in no other way.
     given = node._parameter_overrides.values()
     settings = from_mapping(
-        cls, _nested(p for p in given if not node.has_parameter(p.name))
+        cls, _mapping(p for p in given if not node.has_parameter(p.name))
     )
     values = flattened(to_mapping(settings))
-    for name, field, kind in _fields(cls):
+    for name, declared in _declarations(cls):
         if name in values:
             node.declare_parameter(
-                name, values[name], _descriptor(field, kind), ignore_override=True
+                name, values[name], _descriptor(declared), ignore_override=True
             )
     return settings
 
 
-def changed_settings(settings: Settings, changes: Iterable[Parameter]) -> Settings:
+def changed_settings(
+    settings: AnySettings, changes: Iterable[Parameter]
+) -> AnySettings:
     """Return the settings of a running node with some live ones changed.
 
     Raises:
@@ -52,24 +65,20 @@ def changed_settings(settings: Settings, changes: Iterable[Parameter]) -> Settin
             parameter, the value and what is allowed.
     """
     changes = list(changes)
-    fields = {name: (field, kind) for name, field, kind in _fields(type(settings))}
+    known = dict(_declarations(type(settings)))
     for change in changes:
-        if change.name not in fields:
-            raise SettingsError(change.name, change.value, "unknown parameter")
-        field, kind = fields[change.name]
-        if not field.metadata["live"]:
+        name, value = change.name, change.value
+        if name not in known:
+            raise SettingsError(name, value, "unknown parameter")
+        if not known[name].rules["live"]:
             raise SettingsError(
-                change.name,
-                change.value,
+                name,
+                value,
                 "walks depend on it; it can be given at the node's start only",
             )
-        if kind is float and change.type_ == Parameter.Type.INTEGER:
-            raise SettingsError(
-                change.name,
-                change.value,
-                f"must be a number with a dot, {change.value}.0",
-            )
-    return from_mapping(type(settings), _nested(changes), base=settings)
+        if known[name].kind is float and change.type_ == Parameter.Type.INTEGER:
+            raise SettingsError(name, value, f"must be a number with a dot, {value}.0")
+    return from_mapping(type(settings), _mapping(changes), base=settings)
 
 
 def parameters_of(settings: Any) -> list[Parameter]:
@@ -91,35 +100,31 @@ def flattened(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _nested(parameters: Iterable[Parameter]) -> Mapping[str, Any]:
+def _mapping(parameters: Iterable[Parameter]) -> Mapping[str, Any]:
     """Return parameters as nested settings, the inverse of `flattened`."""
     settings: Mapping[str, Any] = {}
     for parameter in parameters:
         value = parameter.value
-        nested: Any = value.tolist() if isinstance(value, array) else value
-        for part in reversed(parameter.name.split(".")):
-            nested = {part: nested}
-        settings = overlay(settings, nested)
+        plain = value.tolist() if isinstance(value, array) else value
+        settings = overlay(settings, nested(parameter.name, plain))
     return settings
 
 
-def _fields(
+def _declarations(
     cls: type[Any], prefix: str = ""
-) -> Iterator[tuple[str, dataclasses.Field[Any], Any]]:
-    """Yield dotted name, declaration and type of every setting."""
-    hints = get_type_hints(cls)
-    for field in dataclasses.fields(cls):
-        kind = hints[field.name]
-        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
-            yield from _fields(kind, f"{prefix}{field.name}.")
+) -> Iterator[tuple[str, Declaration]]:
+    """Yield every setting's dotted name and what is declared of it."""
+    for name, declared in declarations(cls).items():
+        if declared.is_section:
+            yield from _declarations(declared.kind, f"{prefix}{name}.")
         else:
-            yield f"{prefix}{field.name}", field, kind
+            yield f"{prefix}{name}", declared
 
 
-def _descriptor(field: dataclasses.Field[Any], kind: Any) -> ParameterDescriptor:
-    rules = field.metadata
+def _descriptor(declared: Declaration) -> ParameterDescriptor:
+    kind, rules = declared.kind, declared.rules
     # As in the YAML files, [] marks a pure number.
-    unit = f" [{rules['unit']}]" if kind in (int, float) or rules["unit"] else ""
+    unit = f" [{rules['unit']}]" if kind in _RANGES or rules["unit"] else ""
     descriptor = ParameterDescriptor(
         description=f"{rules['doc']}{unit}", read_only=not rules["live"]
     )
@@ -127,18 +132,13 @@ def _descriptor(field: dataclasses.Field[Any], kind: Any) -> ParameterDescriptor
         descriptor.additional_constraints = f"one of {', '.join(rules['choices'])}"
     if rules["above"] is not None:
         descriptor.additional_constraints = f"above {rules['above']}"
-    lower = rules["lower"] if rules["lower"] is not None else rules["above"]
+    lower = rules["above"] if rules["lower"] is None else rules["lower"]
     upper = rules["upper"]
-    if kind is float and (lower is not None or upper is not None):
-        bounds = FloatingPointRange(
-            from_value=-_LARGEST_FLOAT if lower is None else float(lower),
-            to_value=_LARGEST_FLOAT if upper is None else float(upper),
+    if kind in _RANGES and not lower is upper is None:
+        field, message, largest = _RANGES[kind]
+        bounds = message(
+            from_value=kind(-largest if lower is None else lower),
+            to_value=kind(largest if upper is None else upper),
         )
-        descriptor.floating_point_range = [bounds]
-    if kind is int and (lower is not None or upper is not None):
-        whole = IntegerRange(
-            from_value=-_LARGEST_INTEGER if lower is None else int(lower),
-            to_value=_LARGEST_INTEGER if upper is None else int(upper),
-        )
-        descriptor.integer_range = [whole]
+        setattr(descriptor, field, [bounds])
     return descriptor

@@ -12,24 +12,17 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
 
-from biped_common.settings import SettingsError
+from biped_common.command_line import WRONG_INPUT
+from biped_common.errors import BipedError
 from biped_ros.guarded import GuardedNode
 
-WRONG_INPUT = 2
 REFUSED = 4
 # The events executor cannot be interrupted in an endless spin, so it spins in turns.
 _TURN_S = 0.2
 
 
-def run_node(
-    make: Callable[[], GuardedNode], wrong_input: tuple[type[Exception], ...] = ()
-) -> int:
+def run_node(make: Callable[[], GuardedNode]) -> int:
     """Make a node, spin it until SIGINT or SIGTERM, and close it.
-
-    Args:
-        make: makes the node.
-        wrong_input: errors of the node's making, besides wrong parameters, that are
-            the user's and not the program's.
 
     Returns:
         The exit status: 0 after an orderly end, 2 for wrong input, 4 when the node gave
@@ -49,9 +42,13 @@ def run_node(
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
-    node = None
     try:
         node = make()
+    except BipedError as error:
+        rclpy.try_shutdown()
+        print(f"cannot start: {error}", file=sys.stderr)
+        return WRONG_INPUT
+    try:
         executor = EventsExecutor()
         executor.add_node(node)
         never: Future = Future()
@@ -61,17 +58,10 @@ def run_node(
             print(f"{node.get_name()} gives up: {node.failure}", file=sys.stderr)
             return REFUSED
         return 0
-    except SettingsError as error:
-        print(f"wrong parameter: {error}", file=sys.stderr)
-        return WRONG_INPUT
-    except wrong_input as error:
-        print(f"cannot start: {error}", file=sys.stderr)
-        return WRONG_INPUT
     except ExternalShutdownException:
         return 0
     finally:
-        if node is not None:
-            node.close()
-            node.await_acknowledgements()
-            node.destroy_node()
+        node.close()
+        node.await_acknowledgements()
+        node.destroy_node()
         rclpy.try_shutdown()

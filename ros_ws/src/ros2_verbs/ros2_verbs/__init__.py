@@ -3,14 +3,15 @@
 No wheels of ros2cli exist. These verbs take the options of Jazzy's and print what
 they print; where a real `ros2` is installed it is started instead (`real_ros2`).
 
-How to add a verb: put a module into the folder of its command, `topic/hz.py` for
-`ros2 topic hz`. The first line of its docstring is its help; it has two functions,
-`add_arguments(parser)` and `main(args) -> int`, the exit status. It is imported only
-when it was chosen. Whatever helps several verbs stands in this folder, not among them.
+Commands are entry points of the group `ros2.commands`, the verbs of one of them those
+of `ros2.<command>_verbs`, such as `ros2.topic_verbs`; any package may add to both. The
+object is a module. The first line of its docstring is the help; it has two functions,
+`add_arguments(parser)` and `main(args) -> int`, the exit status. A command with verbs
+has neither: its module is the package of the folder where they stand. A verb is
+imported only when it was chosen, a command also for the help of `ros2` alone: what it
+takes long to import, it imports in `main`.
 
-How to add a command: name it in `main.COMMANDS`. It is a folder of verbs, or, without
-verbs, a module with these two functions.
-
-A verb meets the graph through `graph_node`. It ends with an error by raising
-`VerbError`; Ctrl-C and a reader that has gone away are taken care of by `main`.
+What several commands need stands in `graph` and `messages`. A verb meets the graph
+through `graph.node`. It ends with an error by raising `VerbError`; Ctrl-C and a reader
+that has gone away are taken care of by `main`.
 """

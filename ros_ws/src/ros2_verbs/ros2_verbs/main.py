@@ -9,37 +9,26 @@ short verb is its start.
 from __future__ import annotations
 
 import argparse
-import importlib
 import io
 import os
-import pkgutil
 import signal
 import sys
 from collections.abc import Sequence
-from types import ModuleType
+from importlib.metadata import EntryPoint
 from typing import Any
 
 from biped_common.command_line import INTERRUPTED
+from biped_common.errors import BipedError
 from biped_common.signals import loading
+from biped_common.verbs import docstring_of, use_verbs
 from ros2_verbs import real_ros2
 from ros2_verbs.environment import prepare_environment
 
 FAILED = 1
 TERMINATED = 143
 
-COMMANDS = {
-    "bag": "Various rosbag related commands",
-    "doctor": "Check ROS setup and other potential issues",
-    "interface": "Show information about ROS interfaces",
-    "node": "Various node related sub-commands",
-    "param": "Various param related sub-commands",
-    "run": "Run a package specific executable",
-    "service": "Various service related sub-commands",
-    "topic": "Various topic related sub-commands",
-}
-"""Name and help of each command; see the package's docstring."""
-
-_PACKAGE = "ros2_verbs"
+COMMANDS = "ros2.commands"
+"""Group of entry points; the docstring of `ros2_verbs` says what they are."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -50,8 +39,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare_environment()
     completing = "_ARGCOMPLETE" in os.environ
     words = _words_to_complete() if completing else arguments
-    with loading():
-        parser = make_parser(words)
+    try:
+        with loading():
+            parser = make_parser(words)
+    except BipedError as error:
+        return _failed(error)
     if completing:
         import argcomplete
 
@@ -78,21 +70,22 @@ def run(args: argparse.Namespace) -> int:
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
-    except (RuntimeError, OSError) as error:
-        # VerbError is one of them, and so are the errors of rclpy.
-        print(" ".join(str(error).split()), file=sys.stderr)
-        return FAILED
+    except (BipedError, RuntimeError, OSError) as error:
+        # Errors of rclpy's C library are RuntimeErrors.
+        return _failed(error)
     return status
 
 
 def make_parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """Return a parser that knows all names, but only the chosen verb's options.
+    """Return a parser for a command line, without the options of other verbs.
 
     Args:
-        words: the command line behind `ros2`, perhaps unfinished.
+        words: behind `ros2`, perhaps unfinished.
+
+    Raises:
+        CommandError: the chosen command or verb cannot be loaded.
     """
-    names = [word for word in words if not word.startswith("-")][:2]
-    chosen = names[0] if names and names[0] in COMMANDS else None
+    names = [word for word in words if not word.startswith("-")]
     top = argparse.ArgumentParser(
         prog="ros2", description="ros2 is an extensible command-line tool for ROS 2."
     )
@@ -101,50 +94,36 @@ def make_parser(words: Sequence[str]) -> argparse.ArgumentParser:
         title="Commands",
         metavar="Call `ros2 <command> -h` for more detailed usage.",
     )
-    for name, description in COMMANDS.items():
-        command = commands.add_parser(name, help=description, description=description)
-        command.set_defaults(parser=command)
-        if name == chosen:
-            _add_command(command, name, names[1:])
+    _add_verbs(commands, COMMANDS, names)
     return top
 
 
-def verbs_of(command: str) -> list[str] | None:
-    """Return the verbs of a command, None if it is itself one."""
-    path = getattr(importlib.import_module(f"{_PACKAGE}.{command}"), "__path__", None)
-    if path is None:
-        return None
-    return sorted(module.name for module in pkgutil.iter_modules(path))
-
-
-def _add_command(
-    command: argparse.ArgumentParser, name: str, rest: Sequence[str]
-) -> None:
-    verbs = verbs_of(name)
-    if verbs is None:
-        _add_verb(command, importlib.import_module(f"{_PACKAGE}.{name}"))
-        return
-    parsers = command.add_subparsers(
-        title="Verbs",
-        metavar=f"Call `ros2 {name} <verb> -h` for more detailed usage.",
-    )
-    chosen = rest[0] if rest and rest[0] in verbs else None
-    for verb in verbs:
-        # With a verb chosen the help of the others is not shown.
-        if chosen not in (verb, None):
-            parsers.add_parser(verb)
-            continue
-        module = importlib.import_module(f"{_PACKAGE}.{name}.{verb}")
-        description = (module.__doc__ or "").partition("\n")[0].rstrip(".")
-        parser = parsers.add_parser(verb, help=description, description=description)
+def _add_verbs(parsers: Any, group: str, names: Sequence[str]) -> None:
+    def add(point: EntryPoint, called: bool) -> None:
+        # What was not called for is not run, not even for its help.
+        module: Any = point.load() if called else None
+        text = module.__doc__ or "" if called else docstring_of(point)
+        text = text.partition("\n")[0].rstrip(".")
+        parser = parsers.add_parser(point.name, help=text, description=text)
         parser.set_defaults(parser=parser)
-        if verb == chosen:
-            _add_verb(parser, module)
+        if not called:
+            return
+        if group == COMMANDS and not hasattr(module, "main"):
+            verbs = parser.add_subparsers(
+                title="Verbs",
+                metavar=f"Call `ros2 {point.name} <verb> -h` for more detailed usage.",
+            )
+            _add_verbs(verbs, f"ros2.{point.name}_verbs", names[1:])
+        else:
+            module.add_arguments(parser)
+            parser.set_defaults(run=module.main)
+
+    use_verbs(group, names, add)
 
 
-def _add_verb(parser: argparse.ArgumentParser, module: ModuleType) -> None:
-    module.add_arguments(parser)
-    parser.set_defaults(run=module.main)
+def _failed(error: Exception) -> int:
+    print(" ".join(str(error).split()), file=sys.stderr)
+    return FAILED
 
 
 def _words_to_complete() -> list[str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,16 +17,10 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+from biped_bag.qos import RECORDED_DEPTH, as_rosbag2, receives_from, recording_qos
 from biped_bag.recorder.continuity import Continuity
-from biped_bag.recorder.offered_qos import (
-    DEPTH,
-    as_rosbag2,
-    is_latched,
-    matching_qos,
-    receives_from,
-)
 from biped_bag.recorder.selection import Selection
-from biped_bag.writer import RecordedMessage
+from biped_bag.storage.contents import BagMessage, BagTopic, OfferedQos
 from biped_ros.qos import qos_profile
 from msgs_json.topics import Topic
 
@@ -43,17 +37,9 @@ class IncomingTopic:
     subscription: Subscription
     received: int = 0
     continuity: Continuity = field(default_factory=Continuity)
-    offered_qos: list[dict[str, Any]] = field(default_factory=list)
-    """By the publishers when the topic was announced, as rosbag2 writes it."""
-    type_hash: str = ""
     announced: bool = False
     publishers_there: int = 0
     gids: set[bytes] = field(default_factory=set)
-
-    @property
-    def latched(self) -> bool:
-        """Whether who comes later still gets the last message."""
-        return is_latched(self.qos)
 
 
 class Intake:
@@ -63,7 +49,7 @@ class Intake:
         self,
         listener: Node,
         selection: Selection,
-        announce: Callable[[IncomingTopic], None],
+        announce: Callable[[BagTopic], None],
         warn: Callable[[str], None],
     ) -> None:
         """Listen to nothing yet.
@@ -80,13 +66,13 @@ class Intake:
         self._announce = announce
         self._warn = warn
         self._given_up: set[str] = set()
-        self._held: list[RecordedMessage] = []
+        self._held: list[BagMessage] = []
 
     def expect(self, topics: Iterable[Topic]) -> None:
         """Listen to topics that will be published as their contract says."""
         for topic in topics:
             if self._selection.wants(topic.name):
-                qos = matching_qos([qos_profile(topic)])
+                qos = recording_qos([qos_profile(topic)])
                 self._listen(topic.name, topic.type_name, qos)
 
     def look_around(self) -> None:
@@ -103,7 +89,7 @@ class Intake:
             else:
                 self._meet(name, type_names[0])
 
-    def take(self) -> list[RecordedMessage]:
+    def take(self) -> list[BagMessage]:
         """Return what has come, in the order in which it was received."""
         horizon_ns = time.time_ns()
         batch, self._held = self._held, []
@@ -113,22 +99,23 @@ class Intake:
         return batch
 
     def _take_all(
-        self, topic: IncomingTopic, horizon_ns: int, batch: list[RecordedMessage]
+        self, topic: IncomingTopic, horizon_ns: int, batch: list[BagMessage]
     ) -> None:
         queue = topic.subscription.handle
         with queue:  # keeps it from being destroyed
-            for _ in range(DEPTH):
+            for _ in range(RECORDED_DEPTH):
                 taken = queue.take_message(topic.message_class, True)
                 if taken is None:
                     return
                 topic.received += 1
                 if not topic.announced:
                     self._meet(topic.name, topic.type_name)
-                    self._make_known(topic)
+                if not topic.announced:
+                    self._make_known(topic, [as_rosbag2(topic.qos)])
                 data, about = taken
                 number = about["publication_sequence_number"]
                 topic.continuity.take(number)
-                message = RecordedMessage(
+                message = BagMessage(
                     topic.name,
                     data,
                     about["received_timestamp"],
@@ -145,13 +132,16 @@ class Intake:
         infos = self._listener.get_publishers_info_by_topic(name)
         offered = [info.qos_profile for info in infos]
         topic = self.topics.get(name)
-        if topic is not None and not topic.received and offered:
-            qos = matching_qos(offered)
-            if not all(receives_from(topic.qos, each) for each in offered):
-                self._listener.destroy_subscription(topic.subscription)
-                topic = self._listen(name, type_name, qos)
+        if (
+            topic is not None
+            and not topic.received
+            and not all(receives_from(topic.qos, each) for each in offered)
+        ):
+            # It was expected with another quality of service.
+            self._listener.destroy_subscription(topic.subscription)
+            topic = None
         if topic is None:
-            topic = self._listen(name, type_name, matching_qos(offered))
+            topic = self._listen(name, type_name, recording_qos(offered))
         if topic is None:
             return
         topic.publishers_there = len(infos)
@@ -160,15 +150,17 @@ class Intake:
         if any(not receives_from(topic.qos, each) for each in offered):
             self._warn(f"{name}: a publisher offers less than is asked for, unrecorded")
         if infos and not topic.announced:
-            topic.offered_qos = [as_rosbag2(each) for each in offered]
-            topic.type_hash = str(infos[0].topic_type_hash)
-            self._make_known(topic)
+            offered_qos = [as_rosbag2(each) for each in offered]
+            self._make_known(topic, offered_qos, str(infos[0].topic_type_hash))
 
-    def _make_known(self, topic: IncomingTopic) -> None:
-        if not topic.announced:
-            topic.announced = True
-            topic.offered_qos = topic.offered_qos or [as_rosbag2(topic.qos)]
-            self._announce(topic)
+    def _make_known(
+        self,
+        topic: IncomingTopic,
+        offered_qos: Sequence[OfferedQos],
+        type_hash: str = "",
+    ) -> None:
+        topic.announced = True
+        self._announce(BagTopic(topic.name, topic.type_name, offered_qos, type_hash))
 
     def _listen(
         self, name: str, type_name: str, qos: QoSProfile

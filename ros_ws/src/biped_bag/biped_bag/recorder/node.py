@@ -11,27 +11,28 @@ What failures do:
         in the log and in /diagnostics, then the recorder ends with exit status 4.
     a wrong parameter: one line, exit status 2.
     a topic whose type is not installed: a warning; the others are recorded.
-    kill -9: the bag has all but the last 0.2 s; see bag/writer.py for its state.
+    kill -9: the bag has all but the last 0.2 s; storage/writer.py says in what state.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
+from mcap.records import Attachment
 
 from biped_bag.errors import BagError
-from biped_bag.recorder.episode_records import EpisodeRecords
-from biped_bag.recorder.intake import IncomingTopic, Intake
-from biped_bag.recorder.report import counts_record, counts_table
+from biped_bag.recorder.counts import counts_of, counts_table
+from biped_bag.recorder.episodes import EpisodeRecords
+from biped_bag.recorder.intake import Intake
 from biped_bag.recorder.selection import selection_of
 from biped_bag.recorder.settings import RecorderSettings
-from biped_bag.recording import Recording
+from biped_bag.recorder.writer_thread import WriterThread
 from biped_bag.records import (
     COUNTS_RECORD,
     EPISODE_RECORD,
@@ -39,14 +40,16 @@ from biped_bag.records import (
     RUN_RECORD,
     STATE_KEY,
 )
-from biped_bag.writer import BagWriter, RecordedMessage, fresh_folder
-from biped_common.settings import SettingsError
+from biped_bag.storage.contents import BagMessage, BagTopic
+from biped_bag.storage.layout import fresh_folder
+from biped_bag.storage.writer import BagWriter
+from biped_common.settings import SettingsError, from_json
 from biped_ros.guarded import GuardedNode
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.topics import Topic
 
-NAME = "recorder_node"
+NAME = topics.RECORDER_NODE
 _TURN_S = 0.02
 _LOOK_PERIOD_S = 0.1
 # Long enough for the reason to get around before the node ends.
@@ -71,9 +74,9 @@ class RecorderNode(GuardedNode):
             raise SettingsError("folder", "", "must name the folder of the bag")
         selection = selection_of(self._settings)
         self._error = ""
-        self._recording: Recording | None = None
+        self._recording: WriterThread | None = None
         self._episodes = EpisodeRecords()
-        self._waiting: list[RecordedMessage] = []
+        self._waiting: list[BagMessage] = []
         self._listener = rclpy.create_node(
             f"_{NAME}_intake",
             context=self.context,
@@ -103,13 +106,18 @@ class RecorderNode(GuardedNode):
                 self._pass_on()
             self._pass_on()  # the last walk's record
             incoming = self._intake.topics.values()
-            recording.do(
-                lambda bag: bag.add_record(COUNTS_RECORD, counts_record(incoming, bag))
-            )
+
+            def count(bag: BagWriter) -> None:
+                counts = counts_of(incoming, bag).items()
+                texts = {name: json.dumps(of_topic) for name, of_topic in counts}
+                bag.add_record(COUNTS_RECORD, texts)
+
+            recording.do(count)
             lost = sum(topic.continuity.lost for topic in incoming)
             state = str(recording.error or "complete")
             recording.close({STATE_KEY: state, LOST_KEY: str(lost)})
-            for line in counts_table(incoming, recording.writer):
+            bag = recording.writer
+            for line in counts_table(counts_of(incoming, bag), bag.folder):
                 self.get_logger().info(line)
         self._listener.destroy_node()
         if self._error:
@@ -125,7 +133,7 @@ class RecorderNode(GuardedNode):
             "topics": str(sum(topic.announced for topic in incoming)),
         }
 
-    def _begun(self) -> Recording:
+    def _begun(self) -> WriterThread:
         """Begin the bag.
 
         Raises:
@@ -136,12 +144,13 @@ class RecorderNode(GuardedNode):
         settings = self._settings
         asked_for = Path(settings.folder).absolute()
         folder = fresh_folder(asked_for) if settings.number_if_taken else asked_for
-        run = _texts("run", settings.run)
-        attachment = Path(settings.attachment) if settings.attachment else None
+        run = from_json("run", settings.run, dict[str, str])
+        attached = []
         if folder != asked_for:
             # Begun in the middle of a run: the memory there is not the one begun with.
-            run, attachment = {**run, "continues": asked_for.name}, None
-        content = None if attachment is None else attachment.read_bytes()
+            run["continues"] = asked_for.name
+        elif settings.attachment:
+            attached.append(_attachment(Path(settings.attachment)))
         writer = BagWriter(
             folder,
             max_file_bytes=(
@@ -149,12 +158,10 @@ class RecorderNode(GuardedNode):
             ),
             records={RUN_RECORD: run} if run else {},
         )
-        if attachment is not None and content is not None:
-            writer.attach(
-                attachment.name, "application/octet-stream", content, time.time_ns()
-            )
+        for item in attached:
+            writer.attach(item)
         self.get_logger().info(f"recording to {folder}")
-        return Recording(writer)
+        return WriterThread(writer)
 
     def _turn(self) -> None:
         if self._recording is None or self._error:
@@ -190,17 +197,9 @@ class RecorderNode(GuardedNode):
         recording.put(self._waiting[:ready])
         del self._waiting[:ready]
 
-    def _announce(self, topic: IncomingTopic) -> None:
+    def _announce(self, topic: BagTopic) -> None:
         if self._recording is not None:
-            self._recording.do(
-                lambda bag: bag.add_topic(
-                    topic.name,
-                    topic.type_name,
-                    topic.offered_qos,
-                    type_hash=topic.type_hash,
-                    latched=topic.latched,
-                )
-            )
+            self._recording.do(lambda bag: bag.add_topic(topic))
 
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text)
@@ -224,18 +223,14 @@ class RecorderNode(GuardedNode):
         super()._publish_diagnostics()
 
 
-def _texts(key: str, text: str) -> dict[str, str]:
-    """Return a JSON object of texts.
+def _attachment(file: Path) -> Attachment:
+    """Return a file as it is kept in the bag.
 
     Raises:
-        SettingsError: it is something else.
+        OSError: it cannot be read.
     """
-    try:
-        return msgspec.json.decode(text, type=dict[str, str])
-    except msgspec.DecodeError as error:
-        raise SettingsError(
-            key, text, f"must be a JSON object of texts, {error}"
-        ) from None
+    now_ns, kind = time.time_ns(), "application/octet-stream"
+    return Attachment(now_ns, now_ns, file.name, kind, file.read_bytes())
 
 
 def main() -> int:

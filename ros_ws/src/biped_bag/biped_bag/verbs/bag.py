@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from biped_common.verbs import add_verbs
@@ -20,3 +21,32 @@ def add_parser(verbs: Any, words: Sequence[str]) -> None:
     )
     sub_verbs = parser.add_subparsers(dest="bag_verb", required=True, metavar="VERB")
     add_verbs(sub_verbs, "biped.bag_verbs", words)
+
+
+def add_bag_verb(
+    verbs: Any,
+    name: str,
+    summary: str,
+    description: str | None,
+    run: Callable[[argparse.Namespace], int],
+    bag: str = "BAG",
+) -> argparse.ArgumentParser:
+    """Add a sub-verb on one bag; return its parser.
+
+    Args:
+        verbs: what `add_subparsers` returned.
+        name: of the sub-verb.
+        summary: one line, for the list of sub-verbs.
+        description: docstring of its module, with the exit statuses, for its help.
+        run: runs it and returns the exit status.
+        bag: what the bag is called in the help.
+    """
+    parser: argparse.ArgumentParser = verbs.add_parser(
+        name,
+        help=summary,
+        description=description,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("bag", type=Path, metavar=bag, help="folder or MCAP file")
+    parser.set_defaults(run=run)
+    return parser

@@ -1,4 +1,12 @@
-"""`biped bag cut`: a stretch of a bag as a bag of its own."""
+"""Write a stretch of a bag, and maybe only some topics of it, as a bag of its own.
+
+Latched messages from before the stretch stand at its start.
+
+Exit status:
+    0  written, and it holds nothing but whole messages
+    2  no such bag or a broken one, no such topic or episode, nothing in the stretch;
+       OUT is there already or cannot be written: what was begun of it is removed
+"""
 
 from __future__ import annotations
 
@@ -10,19 +18,21 @@ from pathlib import Path
 from typing import Any
 
 from biped_bag.cut import cut, stretch_of_episodes, stretch_of_time
-from biped_bag.reader import BagReader
+from biped_bag.storage.reader import BagReader
+from biped_bag.verbs.bag import add_bag_verb
 from biped_common.command_line import CommandError, add_json_option, print_json
 
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
-    parser: argparse.ArgumentParser = verbs.add_parser(
+    parser = add_bag_verb(
+        verbs,
         "cut",
-        help="cut a stretch of time, or some episodes, out of a bag",
-        description="Write a stretch of a bag as a bag of its own. Latched messages "
-        "from before the stretch stand at its start.",
+        "cut a stretch of time, or some episodes, out of a bag",
+        __doc__,
+        run,
+        "IN",
     )
-    parser.add_argument("bag", type=Path, metavar="IN", help="folder or MCAP file")
     parser.add_argument(
         "out", type=Path, metavar="OUT", help="folder of the new bag; must not exist"
     )
@@ -40,7 +50,6 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     )
     parser.add_argument("--topics", nargs="+", metavar="TOPIC", help="keep these only")
     add_json_option(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -1,4 +1,14 @@
-"""`biped bag play`: a recorded bag on the graph again."""
+"""Publish a bag's messages with their recorded timing, bytes and quality of service.
+
+Latched topics come first. While it plays, /player/pause, /player/resume and
+/player/step (std_srvs/srv/Trigger) stop it, let it go on, and let one message pass.
+A rate that the machine cannot keep is a warning; no message is left out.
+
+Exit status:
+    0    played to the end
+    2    no such bag or a broken one, or there is nothing in it of what was asked for
+    130  interrupted
+"""
 
 from __future__ import annotations
 
@@ -7,12 +17,12 @@ import math
 import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
-from biped_bag.playback import PlayRequest, play
-from biped_bag.playback_clock import FLAT_OUT
-from biped_bag.reader import BagReader
+from biped_bag.player.clock import FLAT_OUT
+from biped_bag.player.play import PlayRequest, play
+from biped_bag.storage.reader import BagReader
+from biped_bag.verbs.bag import add_bag_verb
 from biped_common.command_line import DONE, INTERRUPTED, CommandError, natural
 from biped_common.signals import stop_requests
 from biped_ros.environment import (
@@ -24,16 +34,9 @@ from biped_ros.environment import (
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
-    parser: argparse.ArgumentParser = verbs.add_parser(
-        "play",
-        help="publish a bag's messages as they were recorded",
-        description="Publish a bag's messages with their recorded timing, bytes and "
-        "quality of service; latched topics first. While it plays, /player/pause, "
-        "/player/resume and /player/step (std_srvs/srv/Trigger) stop it, let it go on, "
-        "and let one message pass. Exit status 0 when played to the end, 2 for wrong "
-        "input, 130 when interrupted.",
+    parser = add_bag_verb(
+        verbs, "play", "publish a bag's messages as they were recorded", __doc__, run
     )
-    parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     pace = parser.add_mutually_exclusive_group()
     pace.add_argument(
         "--rate", metavar="R", default="1", help="times as fast (default 1)"
@@ -75,7 +78,6 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         default=DISCOVERY_RANGES[0],
         help="who may listen: processes on this machine (default), or in the subnet",
     )
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

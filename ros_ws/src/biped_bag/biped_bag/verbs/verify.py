@@ -1,4 +1,14 @@
-"""`biped bag verify`: does a learner, given what was observed, answer as recorded?"""
+"""Let a learner answer the recorded observations again, and compare.
+
+It has the recorded settings, seed and memory; its corrections and results must be the
+recorded ones, bit for bit. ZMP error and T_err are computed anew.
+
+Exit status:
+    0  every correction was compared, and all is the same
+    1  something differs, or could not be compared, or there is nothing to compare
+    2  no such bag or a broken one, or it does not say how the run began
+    3  all that was recorded is the same, but the last walk is cut short
+"""
 
 from __future__ import annotations
 
@@ -8,11 +18,12 @@ from pathlib import Path
 from typing import Any
 
 from biped_bag.errors import BagError
-from biped_bag.reader import BagReader
-from biped_bag.recorded_session import recorded_session
-from biped_bag.recorded_walks import WANTED
-from biped_bag.verify import verify
-from biped_bag.verify_report import Verdict, Verification, WalkCheck
+from biped_bag.storage.reader import BagReader
+from biped_bag.verbs.bag import add_bag_verb
+from biped_bag.verification.learner import recorded_session
+from biped_bag.verification.report import Verdict, Verification, WalkCheck
+from biped_bag.verification.verify import verify
+from biped_bag.verification.walks import WANTED
 from biped_common.command_line import add_json_option, print_json
 from msgs_json.wire import MalformedMessageError
 
@@ -25,17 +36,13 @@ _STATUS = {
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
     """Add the verb."""
-    parser: argparse.ArgumentParser = verbs.add_parser(
+    parser = add_bag_verb(
+        verbs,
         "verify",
-        help="let a learner answer the recorded observations again, and compare",
-        description="Give the recorded observations to a learner with the recorded "
-        "settings, seed and memory, and compare its corrections and results with the "
-        "recorded ones, bit for bit; compute ZMP error and T_err anew. Exit status 0 "
-        "when every correction was compared and all is the same, 1 when something "
-        "differs or could not be compared, 2 for wrong input, 3 when all that was "
-        "recorded is the same but the last walk is cut short.",
+        "let a learner answer the recorded observations again, and compare",
+        __doc__,
+        run,
     )
-    parser.add_argument("bag", type=Path, metavar="BAG", help="folder or MCAP file")
     parser.add_argument(
         "--run-of",
         type=Path,
@@ -44,7 +51,6 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "replay, which cannot know them, and for cut bags",
     )
     add_json_option(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

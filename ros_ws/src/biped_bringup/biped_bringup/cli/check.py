@@ -12,6 +12,7 @@ from biped_bringup.cli.options import add_settings_options, settings_of
 from biped_common.command_line import add_json_option, print_json
 from biped_common.settings import to_mapping
 from biped_common.timing import seconds
+from biped_description.robot import Robot
 from learner_node.walking.schedule import LearningSchedule
 from trajectory_node.waist_reference import WaistReference
 
@@ -28,6 +29,9 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser.add_argument(
         "--show", action="store_true", help="print all settings as YAML (SI units)"
     )
+    parser.add_argument(
+        "--urdf", action="store_true", help="print the URDF of the robot"
+    )
     add_json_option(parser)
     parser.set_defaults(run=run)
 
@@ -35,7 +39,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 def run(options: argparse.Namespace) -> int:
     """Check and report."""
     settings = settings_of(options)
-    reference = WaistReference(settings.gait, settings.correction)
+    robot = Robot(settings.robot)
+    reference = WaistReference(robot, settings.gait, settings.correction)
     schedule = LearningSchedule(settings.learner.schedule, reference.ticks)
     if options.json:
         print_json(
@@ -46,6 +51,8 @@ def run(options: argparse.Namespace) -> int:
                 "settings": to_mapping(settings),
             }
         )
+    elif options.urdf:
+        print(robot.urdf, end="")
     elif options.show:
         print(yaml.safe_dump(to_mapping(settings), sort_keys=False), end="")
     else:

@@ -10,6 +10,7 @@ from typing import Any
 
 from rich.console import Console
 
+from biped_bringup.cli.figures import figures_text
 from biped_bringup.cli.options import (
     add_replay_options,
     add_settings_options,
@@ -170,8 +171,7 @@ def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:
         f"simulated            {summary['simulated_s']:.1f} s in "
         f"{summary['cpu_s']:.1f} CPU s\n"
         f"replay               {replay}\n"
-        f"states               {summary['basis_states']}, of which "
-        f"{summary['fixed_states']} fixed, {summary['penalty_states']} penalty states\n"
+        f"learner              {figures_text(summary['figures'])}\n"
         f"memory               {summary['memory_file']}\n"
         f"episode log          {folder / LOG_FILE}"
     )

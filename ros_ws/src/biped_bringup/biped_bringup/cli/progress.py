@@ -8,6 +8,7 @@ from types import TracebackType
 from rich.console import Console
 from rich.text import Text
 
+from biped_bringup.cli.figures import figures_text
 from biped_bringup.training import TrainingRun
 from biped_common.live_display import LiveDisplay
 from biped_common.timing import seconds
@@ -51,7 +52,7 @@ class TrainingProgress(LiveDisplay):
     def line(self) -> str:
         """Return the state in one line."""
         run = self._run
-        schedule, agent, tally = run.learner.schedule, run.learner.agent, run.tally
+        schedule, tally = run.session.task.schedule, run.tally
         ticks = tally.simulated_ticks + tally.evaluation_ticks - self._ticks_before
         replayed = (
             f"replayed {100 * run.walker.ticks.replayed_share:.0f} %"
@@ -64,7 +65,6 @@ class TrainingProgress(LiveDisplay):
             f"{' (whole walk, schedule complete)' if schedule.complete else ''}"
             f"  successes {schedule.successes}"
             f"  episodes {run.episodes}  survival {100 * run.log.survival():.0f} %"
-            f"  states {agent.basis_states} (fixed {agent.fixed_states}, "
-            f"penalty {agent.penalty_states})"
+            f"  {figures_text(run.session.learner.figures())}"
             f"  {replayed}  {rate:.1f} simulated s/s"
         )

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from biped_bag.errors import BagError
-from biped_bag.metadata import read_metadata
 from biped_bag.recorder.settings import RecorderSettings
 from biped_bag.records import LOST_KEY, STATE_KEY
-from biped_bag.writer import holds_bag
+from biped_bag.storage.layout import holds_bag
+from biped_bag.storage.metadata import read_metadata
 from biped_bringup.supervisor.supervisor import RECORDER, Supervisor
 from biped_common.command_line import CommandError
 from biped_common.settings import to_mapping

@@ -6,6 +6,7 @@ from rich.console import Console, Group
 from rich.table import Table
 from rich.text import Text
 
+from biped_bringup.cli.figures import figures_text
 from biped_bringup.supervisor.supervisor import Supervisor
 from biped_common.live_display import LiveDisplay
 from biped_common.timing import seconds
@@ -71,6 +72,5 @@ def _learner_line(status: LearnerStatus) -> str:
         f"{' (schedule complete)' if status.schedule_complete else ''}"
         f"  successes {status.successes}  episodes {status.episodes}"
         f"  survival {100 * status.survival:.0f} %"
-        f"  states {status.basis_states} (fixed {status.fixed_states}, "
-        f"penalty {status.penalty_states})"
+        f"  {figures_text(status.figures)}"
     )

@@ -10,7 +10,7 @@ from typing import Any
 
 from rich.console import Console
 
-from biped_bag.recorder.run_record import run_record
+from biped_bag.records import run_record
 from biped_bringup.cli.learn import MEMORY_FILE
 from biped_bringup.cli.options import (
     add_settings_options,
@@ -28,7 +28,7 @@ from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.cli.up_report import report
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import RunSettings
-from biped_bringup.supervisor.graph_watch import GraphWatch
+from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
 from biped_bringup.supervisor.supervisor import (
     RECORDER,
     START_ORDER,
@@ -44,6 +44,7 @@ from biped_common.command_line import (
 )
 from biped_common.settings import to_mapping
 from biped_common.signals import stop_requests
+from biped_description.robot import Robot
 from biped_ros.environment import (
     DISCOVERY_RANGES,
     node_environment,
@@ -144,7 +145,8 @@ def run(options: argparse.Namespace) -> int:
     folder = writable_folder(options.out).resolve()
     memory_file = folder / MEMORY_FILE
     settings, seed = _settings_and_seed(options, memory_file)
-    WaistReference(settings.gait, settings.correction)  # refuses infeasible gaits here
+    # Refuses here a gait that the robot cannot walk.
+    WaistReference(Robot(settings.robot), settings.gait, settings.correction)
     bag = bag_folder(options, names)
     max_episodes = 1 if options.greedy else options.episodes or 0
     parameters = node_parameters(
@@ -181,7 +183,7 @@ def run(options: argparse.Namespace) -> int:
     os.environ.update(environment)  # the supervisor's own node, too
     screen = StatusScreen(Console(stderr=True), live=not options.no_view)
     with stop_requests() as stops, screen:
-        screen.line("supervisor", f"ROS_DOMAIN_ID={domain}, {options.discovery}")
+        screen.line(NAME, f"ROS_DOMAIN_ID={domain}, {options.discovery}")
         supervisor = Supervisor(
             {name: parameters[name] for name in names},
             environment,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from biped_bringup.cli.figures import figures_text
 from biped_bringup.supervisor.supervisor import Supervisor
 from biped_common.command_line import DONE, INTERRUPTED, NOT_ACHIEVED
 from biped_common.timing import seconds
@@ -59,7 +60,7 @@ def _learned(supervisor: Supervisor) -> tuple[list[str], bool]:
     line = (
         f"{'learned' if status.learned else 'not learned yet'}: "
         f"{status.episodes} episodes, {status.simulated_s:.1f} simulated s, "
-        f"{status.basis_states} states, {status.fixed_states} fixed"
+        f"{figures_text(status.figures)}"
     )
     return [line], status.learned
 

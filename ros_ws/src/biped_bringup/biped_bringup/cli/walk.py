@@ -25,7 +25,7 @@ from biped_common.command_line import (
     print_json,
 )
 from biped_common.timing import seconds
-from learner_node.walking.frozen import greedy_walk, static_walk
+from learner_node.walking.walks import greedy_walk, static_walk
 from msgs_json.episode_result import EpisodeResult
 
 
@@ -95,31 +95,39 @@ def _check_figure(path: Path) -> None:
 
 
 def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
-    agent = None
+    learned = None
     if options.memory is not None:
         if options.preset is not None:
             raise CommandError("--preset: a memory brings its own settings")
         learned = TrainingRun.load(options.memory)
         learned.close()
-        agent = learned.learner.agent
         settings = changed_settings(learned.settings, options.config, options.changes)
         if settings.learner != learned.settings.learner:
             raise CommandError(
-                "--set, --config: with --memory, only gait, correction and sim can be "
-                "changed; the learner's settings belong to the memory"
+                "--set, --config: with --memory, only robot, gait, correction and sim "
+                "can be changed; the learner's settings belong to the memory"
             )
     else:
         settings = settings_of(options)
     trace = ZmpTrace()
     walker = Walker(settings, np.random.default_rng(options.seed), trace.add)
     try:
-        if agent is not None:
-            responder = greedy_walk(settings.learner, walker.walk_ticks, agent)
+        if learned is not None:
+            session = learned.session
+            responder = greedy_walk(
+                settings.learner, walker.walk_ticks, session.learner, session.task
+            )
         else:
             responder = static_walk(settings.learner, walker.walk_ticks)
         result = walker.walk(responder)
         if options.figure is not None:
-            draw_zmp(trace, walker.reference.plan, settings.sim.limits, options.figure)
+            draw_zmp(
+                trace,
+                walker.reference.plan,
+                settings.robot,
+                settings.sim.limits,
+                options.figure,
+            )
         return result, walker.biped.trajectory_sha256
     finally:
         walker.close()

@@ -26,22 +26,24 @@ from typing import Any
 import yaml
 
 from biped_bringup.supervisor.child import Child
-from biped_bringup.supervisor.graph_watch import GraphWatch
+from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
+from biped_common.command_line import WRONG_INPUT
 from biped_common.errors import BipedError
 from biped_ros.process import process_name
-from biped_ros.running import REFUSED, WRONG_INPUT
+from biped_ros.running import REFUSED
+from msgs_json import topics
 
-RECORDER = "recorder_node"
-# The recorder comes first and ends last: it misses nothing. The robot comes last: when
-# it offers its first walk, everybody listens.
-START_ORDER = (RECORDER, "trajectory_node", "learner_node", "sim_node")
+RECORDER = topics.RECORDER_NODE
+# In the order of their start. The recorder comes first and ends last: it misses
+# nothing. The robot comes last: when it offers its first walk, everybody listens.
 _MODULES = {
     RECORDER: "biped_bag.recorder.node",
-    "trajectory_node": "trajectory_node.node",
-    "learner_node": "learner_node.node",
-    "sim_node": "sim_node.node",
+    topics.TRAJECTORY_NODE: "trajectory_node.node",
+    topics.LEARNER_NODE: "learner_node.node",
+    topics.SIM_NODE: "sim_node.node",
 }
+START_ORDER = tuple(_MODULES)
 _TURN_S = 0.1
 
 
@@ -129,7 +131,7 @@ class Supervisor:
             for child in children:
                 if child.running:
                     if number is not signal.SIGINT:
-                        self._show("supervisor", f"{child.name} gets {number.name}")
+                        self._show(NAME, f"{child.name} gets {number.name}")
                     child.signal(number)
                     # One that was stopped cannot end before it is let go on.
                     child.signal(signal.SIGCONT)
@@ -153,7 +155,7 @@ class Supervisor:
                 )
                 return
         self._budgets[child.name].ready()
-        self._show("supervisor", f"{child.name} is ready (process {child.pid})")
+        self._show(NAME, f"{child.name} is ready (process {child.pid})")
 
     def _look_after(self, child: Child, stopped: Callable[[], bool]) -> None:
         if child.name in self.done_without:
@@ -165,7 +167,7 @@ class Supervisor:
         heard = self.graph.heard_at.get(child.name)
         if heard is not None and time.monotonic() - heard > self._patience.silence_s:
             self._show(
-                "supervisor",
+                NAME,
                 f"{child.name} has been silent for {self._patience.silence_s:g} s: "
                 "it is killed",
             )
@@ -186,7 +188,7 @@ class Supervisor:
             )
             return
         self._show(
-            "supervisor",
+            NAME,
             f"{child.name} died (exit status {status}), starts again in {delay_s:g} s",
         )
         self.graph.spin(delay_s)
@@ -202,4 +204,4 @@ class Supervisor:
             raise NodeFailureError(f"{child.name} {reason}")
         child.signal(signal.SIGKILL)
         self.done_without[child.name] = reason
-        self._show("supervisor", f"{child.name}: {reason}; the walk goes on")
+        self._show(NAME, f"{child.name}: {reason}; the walk goes on")

@@ -5,18 +5,13 @@ from __future__ import annotations
 import argparse
 
 from biped_bag.info import info_text
-from biped_bag.reader import BagReader
-from ros2_verbs.bag_arguments import (
-    add_bag_argument,
-    add_storage_argument,
-    bag_errors,
-)
+from biped_bag.storage.reader import BagReader
+from ros2_verbs.bag.shared import add_bag_argument, bag_errors
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
     add_bag_argument(parser)
-    add_storage_argument(parser)
     parser.add_argument(
         "-t", "--topic-name", action="store_true", help="only display topic names"
     )

@@ -6,25 +6,20 @@ import argparse
 import os
 import sys
 
-from biped_bag.playback import PlayRequest, play
-from biped_bag.reader import BagReader
+from biped_bag.player.play import PlayRequest, play
+from biped_bag.storage.reader import BagReader
 from biped_common.command_line import DONE, INTERRUPTED
 from biped_common.signals import stop_requests
 from biped_ros.environment import node_environment
-from ros2_verbs.arguments import positive_float
-from ros2_verbs.bag_arguments import (
-    add_bag_argument,
-    add_storage_argument,
-    bag_errors,
-)
-from ros2_verbs.diagnosis.installation import discovery_range
+from ros2_verbs.bag.shared import add_bag_argument, bag_errors
+from ros2_verbs.environment import discovery_range, domain_text
 from ros2_verbs.errors import VerbError
+from ros2_verbs.options import positive_float
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
     add_bag_argument(parser)
-    add_storage_argument(parser)
     parser.add_argument(
         "-r",
         "--rate",
@@ -91,7 +86,7 @@ def main(args: argparse.Namespace) -> int:
         paused=args.start_paused,
         loop=args.loop,
     )
-    domain = _domain(os.environ.get("ROS_DOMAIN_ID") or "0")
+    domain = _domain(domain_text())
     with bag_errors(), stop_requests() as stops:
         bag = BagReader(args.bag_path)
         os.environ.update(node_environment(domain, discovery_range()))

@@ -10,10 +10,10 @@ from biped_bag.recorder.node import RecorderNode
 from biped_bag.recorder.settings import RecorderSettings
 from biped_ros.parameters import parameters_of
 from biped_ros.running import run_node
-from ros2_verbs.arguments import unsigned_int
-from ros2_verbs.bag_arguments import add_storage_argument, bag_errors
-from ros2_verbs.completion import completed, topic_names
+from ros2_verbs.bag.shared import add_storage_argument, bag_errors
 from ros2_verbs.errors import VerbError
+from ros2_verbs.graph.endpoints import TOPICS
+from ros2_verbs.options import completed, unsigned_int
 
 _BYTES_PER_MB = 1_000_000
 _DEFAULT_NAME = "rosbag2_%Y_%m_%d-%H_%M_%S"
@@ -22,7 +22,8 @@ _DEFAULT_NAME = "rosbag2_%Y_%m_%d-%H_%M_%S"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
     completed(
-        parser.add_argument("topics", nargs="*", help="topics to record"), topic_names
+        parser.add_argument("topics", nargs="*", help="topics to record"),
+        TOPICS.complete_names,
     )
     completed(
         parser.add_argument(
@@ -33,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             metavar="TOPIC",
             help="topics to record, separated by space",
         ),
-        topic_names,
+        TOPICS.complete_names,
     )
     parser.add_argument(
         "-a",
@@ -99,12 +100,11 @@ def settings_of(args: argparse.Namespace) -> RecorderSettings:
     names = [*args.topics, *args.more_topics]
     if not (args.all or names or args.regex):
         raise VerbError(
-            "[ERROR] [ros2bag]: Need to specify at least one option out of --all, "
-            "--topics or --regex"
+            "Need to specify at least one option out of --all, --topics or --regex"
         )
     folder = args.output or Path(time.strftime(_DEFAULT_NAME))
     if folder.exists():
-        raise VerbError(f"[ERROR] [ros2bag]: Output folder '{folder}' already exists.")
+        raise VerbError(f"Output folder '{folder}' already exists.")
     return RecorderSettings(
         folder=str(folder),
         topics="" if args.all else " ".join(names),

@@ -1,1 +1,1 @@
-"""Verbs on message, service and action types."""
+"""Show information about ROS interfaces."""

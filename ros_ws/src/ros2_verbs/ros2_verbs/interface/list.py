@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from ros2_verbs import message_types
-from ros2_verbs.interface_kinds import add_kind_arguments, chosen_kinds
-
-_TITLES = {"msg": "Messages:", "srv": "Services:", "action": "Actions:"}
+from ros2_verbs.interface.kinds import add_kind_arguments, chosen_kinds
+from ros2_verbs.messages.types import KINDS, all_interfaces
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,7 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the types, kind by kind."""
     for kind in chosen_kinds(args):
-        print(_TITLES[kind])
-        for name in message_types.all_interfaces(kind):
+        print(f"{KINDS[kind].capitalize()}s:")
+        for name in all_interfaces(kind):
             print(f"    {name}")
     return 0

@@ -1,1 +1,1 @@
-"""`ros2 node`: one module per verb."""
+"""Various node related sub-commands."""

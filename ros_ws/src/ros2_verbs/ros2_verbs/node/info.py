@@ -13,31 +13,17 @@ from rclpy.action import (
 from rclpy.node import Node
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
-from ros2_verbs.completion import completed
 from ros2_verbs.errors import VerbError
-from ros2_verbs.graph_node import (
-    add_graph_arguments,
-    discover,
-    graph_node,
-    settled,
-)
-from ros2_verbs.node_names import (
-    NodeName,
-    complete_node_names,
-    node_names,
-    parse,
-)
-
-NamesAndTypes = Sequence[tuple[str, Sequence[str]]]
+from ros2_verbs.graph.endpoints import NamesAndTypes
+from ros2_verbs.graph.names import NodeName, add_node_name_argument, node_names
+from ros2_verbs.graph.session import discover, graph_node, settled
+from ros2_verbs.options import add_graph_arguments
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
     add_graph_arguments(parser)
-    completed(
-        parser.add_argument("node_name", help="fully qualified name of the node"),
-        complete_node_names,
-    )
+    add_node_name_argument(parser)
     parser.add_argument(
         "--include-hidden",
         action="store_true",
@@ -51,7 +37,7 @@ def main(args: argparse.Namespace) -> int:
     Raises:
         VerbError: it is not on the graph.
     """
-    wanted = parse(args.node_name)
+    wanted = NodeName.parse(args.node_name)
 
     def known() -> list[NodeName]:
         return node_names(node, hidden=args.include_hidden)
@@ -59,10 +45,10 @@ def main(args: argparse.Namespace) -> int:
     with graph_node(args) as node:
         # What a node has may come later than its name.
         is_settled = settled(node)
-        discover(args, until=lambda: is_settled() and wanted in known())
-        if wanted not in known():
-            raise VerbError(f"Unable to find node '{args.node_name}'")
+        discover(args, lambda: is_settled() and wanted in known())
         twins = known().count(wanted)
+        if not twins:
+            raise VerbError(f"Unable to find node '{args.node_name}'")
         if twins > 1:
             print(
                 f"There are {twins} nodes in the graph with the exact name "

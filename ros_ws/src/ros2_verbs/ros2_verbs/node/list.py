@@ -5,13 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 
-from ros2_verbs.graph_node import (
-    add_graph_arguments,
-    discover,
-    graph_node,
-    settled,
-)
-from ros2_verbs.node_names import node_names
+from ros2_verbs.graph.names import add_count_argument, node_names, print_listed
+from ros2_verbs.graph.session import whole_graph
+from ros2_verbs.options import add_graph_arguments
 
 _TWINS = (
     "WARNING: Be aware that there are nodes in the graph that share an exact name, "
@@ -25,24 +21,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-a", "--all", action="store_true", help="display all nodes, even hidden ones"
     )
-    parser.add_argument(
-        "-c",
-        "--count-nodes",
-        action="store_true",
-        help="only display the number of nodes discovered",
-    )
+    add_count_argument(parser, "nodes")
 
 
 def main(args: argparse.Namespace) -> int:
     """Print the nodes."""
-    with graph_node(args) as node:
-        discover(args, until=settled(node))
-        names = sorted(name.full for name in node_names(node, hidden=args.all))
-    if args.count_nodes:
-        print(len(names))
-        return 0
-    if len(set(names)) < len(names):
+    found = whole_graph(args, lambda node: node_names(node, hidden=args.all))
+    names = sorted(name.full for name in found)
+    if len(set(names)) < len(names) and not args.only_count:
         print(_TWINS, file=sys.stderr)
-    for name in names:
-        print(name)
+    print_listed(args, names)
     return 0

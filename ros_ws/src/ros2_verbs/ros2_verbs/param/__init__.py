@@ -1,1 +1,1 @@
-"""`ros2 param`: one module per verb."""
+"""Various param related sub-commands."""

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 import argparse
 
-from ros2_verbs.completion import completed
+from rcl_interfaces.msg import ParameterDescriptor
+
 from ros2_verbs.errors import VerbError
-from ros2_verbs.parameter_services import (
-    add_node_name_arguments,
-    complete_parameter_names,
+from ros2_verbs.param.services import (
+    add_asked_node_arguments,
+    add_parameter_argument,
     parameter_services,
+    type_name,
 )
-from ros2_verbs.parameter_text import description_text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
-    add_node_name_arguments(parser)
-    completed(
-        parser.add_argument(
-            "parameter_names", nargs="+", help="names of the parameters"
-        ),
-        complete_parameter_names,
-    )
+    add_asked_node_arguments(parser)
+    add_parameter_argument(parser, "parameter_names", nargs="+")
 
 
 def main(args: argparse.Namespace) -> int:
@@ -38,3 +34,24 @@ def main(args: argparse.Namespace) -> int:
     for descriptor in descriptors:
         print(description_text(descriptor))
     return 0
+
+
+def description_text(descriptor: ParameterDescriptor) -> str:
+    """Return name, type, description and constraints, one a line."""
+    lines = [
+        f"Parameter name: {descriptor.name}",
+        f"  Type: {type_name(descriptor.type)}",
+    ]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    for bounds in (*descriptor.floating_point_range, *descriptor.integer_range):
+        lines.append(f"    Min value: {bounds.from_value}")
+        lines.append(f"    Max value: {bounds.to_value}")
+        if bounds.step:
+            lines.append(f"    Step: {bounds.step}")
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return "\n".join(lines)

@@ -8,34 +8,20 @@ import sys
 
 from rclpy.node import Node
 
-from ros2_verbs.completion import completed
 from ros2_verbs.errors import VerbError
-from ros2_verbs.graph_node import (
-    add_graph_arguments,
-    discover,
-    graph_node,
-    settled,
-)
-from ros2_verbs.node_names import complete_node_names, node_names, require_node
-from ros2_verbs.parameter_services import (
+from ros2_verbs.graph.names import node_names
+from ros2_verbs.graph.session import discover, graph_node, settled
+from ros2_verbs.param.services import (
     ParameterServices,
-    add_hidden_and_timeout_arguments,
+    add_asked_node_arguments,
+    connect,
+    type_name,
 )
-from ros2_verbs.parameter_text import type_name
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
-    add_graph_arguments(parser)
-    completed(
-        parser.add_argument(
-            "node_name",
-            nargs="?",
-            help="name of the ROS node; without it, of all nodes",
-        ),
-        complete_node_names,
-    )
-    add_hidden_and_timeout_arguments(parser)
+    add_asked_node_arguments(parser, nargs="?")
     parser.add_argument(
         "--param-prefixes",
         nargs="+",
@@ -66,15 +52,9 @@ def main(args: argparse.Namespace) -> int:
     """
     with graph_node(args) as node:
         if args.node_name:
-            wanted = require_node(
-                node,
-                args.node_name,
-                hidden=args.include_hidden_nodes,
-                timeout_s=args.timeout,
-            )
-            print(*_lines(args, ParameterServices(node, wanted.full)), sep="\n")
+            print(*_lines(args, connect(node, args)), sep="\n")
             return 0
-        discover(args, until=settled(node))
+        discover(args, settled(node))
         status = 0
         for name in _nodes_with_parameters(node, hidden=args.include_hidden_nodes):
             try:

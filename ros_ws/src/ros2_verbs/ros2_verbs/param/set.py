@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import argparse
 
-from ros2_verbs.completion import completed
+import yaml
+from rclpy.parameter import Parameter
+
 from ros2_verbs.errors import VerbError
-from ros2_verbs.parameter_services import (
-    add_node_name_arguments,
-    complete_parameter_names,
+from ros2_verbs.param.services import (
+    add_asked_node_arguments,
+    add_parameter_argument,
     parameter_services,
 )
-from ros2_verbs.parameter_text import reason_text, typed_parameter
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
-    add_node_name_arguments(parser)
-    completed(
-        parser.add_argument("parameter_name", help="name of the parameter"),
-        complete_parameter_names,
-    )
+    add_asked_node_arguments(parser)
+    add_parameter_argument(parser)
     parser.add_argument("value", help="value of the parameter, in YAML")
 
 
@@ -32,8 +30,21 @@ def main(args: argparse.Namespace) -> int:
     """
     with parameter_services(args) as services:
         (result,) = services.set([typed_parameter(args.parameter_name, args.value)])
-    reason = reason_text(result)
+    reason = f": {result.reason}" if result.reason else ""
     if not result.successful:
         raise VerbError(f"Setting parameter failed{reason}")
     print(f"Set parameter successful{reason}")
     return 0
+
+
+def typed_parameter(name: str, text: str) -> Parameter:
+    """Return a parameter with the value that YAML reads in what the user has typed.
+
+    Whatever YAML cannot read, and what is no parameter value (a mapping, a date, a list
+    of several types), is taken as a string; on some of these rclpy's own reader fails.
+    """
+    try:
+        value = yaml.safe_load(text)
+        return Parameter(name, value=text if value is None else value)
+    except (yaml.YAMLError, TypeError):
+        return Parameter(name, value=text)

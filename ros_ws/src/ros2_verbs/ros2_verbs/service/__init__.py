@@ -1,1 +1,1 @@
-"""`ros2 service`: one module per verb."""
+"""Various service related sub-commands."""

@@ -3,58 +3,33 @@
 from __future__ import annotations
 
 import argparse
-import sys
+import math
 import time
 from typing import Any
 
 from rclpy.node import Node
 
-from ros2_verbs.arguments import positive_float
-from ros2_verbs.completion import completed
 from ros2_verbs.errors import VerbError
-from ros2_verbs.graph_node import (
-    add_node_arguments,
-    graph_node,
-    spin,
-    wait_until,
-)
-from ros2_verbs.message_fill import fill, values_of
-from ros2_verbs.message_types import service_class
-from ros2_verbs.message_yaml import to_yaml
-from ros2_verbs.service_names import (
-    add_hidden_argument,
-    complete_service_names,
-    complete_service_types,
-)
+from ros2_verbs.graph.endpoints import SERVICES
+from ros2_verbs.graph.session import graph_node, spin, wait_until
+from ros2_verbs.messages.fill import add_values_arguments, fill, given_values
+from ros2_verbs.messages.text import to_yaml
+from ros2_verbs.messages.types import interface_class
+from ros2_verbs.options import add_node_arguments, completed, positive_float
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
+    SERVICES.add_name_argument(parser)
     completed(
-        parser.add_argument(
-            "service_name", help="service to call (e.g. '/sim_node/pause')"
-        ),
-        complete_service_names,
+        parser.add_argument("service_type", help="type, e.g. std_srvs/srv/SetBool"),
+        SERVICES.complete_types,
     )
-    completed(
-        parser.add_argument(
-            "service_type", help="type of the service (e.g. 'std_srvs/srv/SetBool')"
-        ),
-        complete_service_types,
-    )
-    values = parser.add_mutually_exclusive_group()
-    completed(
-        values.add_argument(
-            "values",
-            nargs="?",
-            default="{}",
-            help="what to fill the request with, in YAML (e.g. '{data: true}'); the "
-            "rest keeps its defaults",
-        ),
+    add_values_arguments(
+        parser,
+        "what to fill the request with, in YAML, e.g. '{data: true}'; the rest keeps "
+        "its defaults",
         _complete_request,
-    )
-    values.add_argument(
-        "--stdin", action="store_true", help="read the values from standard input"
     )
     parser.add_argument(
         "-r",
@@ -67,10 +42,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--timeout",
         metavar="N",
         type=positive_float,
+        default=math.inf,
         help="give up when the service, or its answer, has not come after N seconds "
         "(default: wait for ever)",
     )
-    add_hidden_argument(parser)
+    SERVICES.add_hidden_argument(parser)
     add_node_arguments(parser)
 
 
@@ -80,23 +56,19 @@ def main(args: argparse.Namespace) -> int:
     Raises:
         VerbError: the type or the values are wrong, or the service does not answer.
     """
-    kind = service_class(args.service_type)
+    kind = interface_class(args.service_type, "srv")
     request = kind.Request()
-    now_fields = fill(
-        request, values_of(sys.stdin.read() if args.stdin else args.values)
-    )
+    stamps = fill(request, given_values(args))
     with graph_node(args) as node:
         client = node.create_client(kind, args.service_name)
-        if not client.service_is_ready():
-            # Ours has only just joined, so the first look sees nothing yet.
-            if not wait_until(client.service_is_ready, args.spin_time):
-                print("waiting for service to become available...")
-            left_s = float("inf") if args.timeout is None else args.timeout
-            if not wait_until(client.service_is_ready, left_s):
+        # Ours has only just joined, so the first look sees nothing yet.
+        if not wait_until(client.service_is_ready, args.spin_time):
+            print("waiting for service to become available...")
+            if not wait_until(client.service_is_ready, args.timeout):
                 raise VerbError(f"Service '{args.service_name}' is not available")
         while True:
             began = time.monotonic()
-            for stamp in now_fields:
+            for stamp in stamps:
                 stamp(node.get_clock().now().to_msg())
             _call(node, client, request, args.timeout)
             if args.rate is None:
@@ -104,7 +76,7 @@ def main(args: argparse.Namespace) -> int:
             time.sleep(max(0.0, began + 1.0 / args.rate - time.monotonic()))
 
 
-def _call(node: Node, client: Any, request: Any, timeout_s: float | None) -> None:
+def _call(node: Node, client: Any, request: Any, timeout_s: float) -> None:
     print(f"requester: making request: {request!r}\n")
     future = client.call_async(request)
     if not spin(node, future, timeout_s):
@@ -113,4 +85,5 @@ def _call(node: Node, client: Any, request: Any, timeout_s: float | None) -> Non
 
 
 def _complete_request(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
-    return [to_yaml(service_class(parsed_args.service_type).Request(), flow_style=True)]
+    kind = interface_class(parsed_args.service_type, "srv")
+    return [to_yaml(kind.Request(), flow_style=True)]

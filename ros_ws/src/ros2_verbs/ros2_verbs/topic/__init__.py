@@ -1,1 +1,1 @@
-"""Verbs on topics."""
+"""Various topic related sub-commands."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from typing import Any
 
 import yaml
@@ -10,23 +11,19 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.task import Future
 
-from ros2_verbs import completion, message_yaml
-from ros2_verbs.arguments import positive_float, unsigned_int
 from ros2_verbs.errors import VerbError
-from ros2_verbs.graph_node import (
+from ros2_verbs.graph.endpoints import TOPICS, class_of_topic, topic_types
+from ros2_verbs.graph.qos import add_qos_arguments, listening_profile
+from ros2_verbs.graph.session import caught, discover, graph_node, spin
+from ros2_verbs.messages.filter import message_filter
+from ros2_verbs.messages.text import Shown, to_csv, to_json, to_yaml
+from ros2_verbs.messages.types import complete_message_types, interface_class
+from ros2_verbs.options import (
     add_graph_arguments,
-    caught,
-    discover,
-    graph_node,
-    spin,
+    completed,
+    positive_float,
+    unsigned_int,
 )
-from ros2_verbs.message_filter import message_filter
-from ros2_verbs.message_types import message_class
-from ros2_verbs.qos_options import (
-    add_qos_arguments,
-    listening_profile,
-)
-from ros2_verbs.topics import class_of_topic, is_known
 
 _LENGTH = 128
 _INFO_HEADING = "---Got new message, message info:---\n"
@@ -36,17 +33,14 @@ _DATA_HEADING = "---Message data:---\n"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
     add_graph_arguments(parser)
-    completion.completed(
-        parser.add_argument("topic_name", help="topic, e.g. /joint_states"),
-        completion.topic_names,
-    )
-    completion.completed(
+    TOPICS.add_name_argument(parser)
+    completed(
         parser.add_argument(
             "message_type",
             nargs="?",
             help="its type, e.g. std_msgs/msg/String; with it, a topic is waited for",
         ),
-        completion.message_names,
+        complete_message_types,
     )
     add_qos_arguments(parser, "subscribe", "sensor_data")
     form = parser.add_mutually_exclusive_group()
@@ -116,32 +110,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Print messages until interrupted, or as the options say."""
+    """Print messages until interrupted, or as the options say.
+
+    Raises:
+        VerbError: the options or the topic's type are wrong, or it is not there.
+    """
     echo = _Echo(args)
     with graph_node(args) as node:
-        discover(args, until=lambda: is_known(node, args.topic_name))
+        discover(args, lambda: bool(topic_types(node, args.topic_name)))
         if args.message_type is None:
             kind = class_of_topic(node, args.topic_name, args.timeout or 0.0)
         else:
-            kind = message_class(args.message_type)
+            kind = interface_class(args.message_type, "msg")
         take = caught(echo.finished, echo.take)
 
         def take_with_info(message: Any, info: dict[str, Any]) -> None:
             take(message, info)
 
+        with_info = args.include_message_info
         node.create_subscription(
             kind,
             args.topic_name,
-            take_with_info if args.include_message_info else take,
+            take_with_info if with_info else take,
             listening_profile(node, args.topic_name, args),
             event_callbacks=_lost_messages(args),
             raw=args.raw,
         )
-        if args.include_message_info:
-            # The events executor cannot pass the info on.
-            spin(node, echo.finished, args.timeout, SingleThreadedExecutor())
-        else:
-            spin(node, echo.finished, args.timeout)
+        # The events executor cannot pass the info on.
+        executor = SingleThreadedExecutor() if with_info else None
+        spin(node, echo.finished, args.timeout or math.inf, executor)
     return 0
 
 
@@ -156,7 +153,7 @@ class _Echo:
         if args.field is not None and not self._path:
             raise VerbError(f"Invalid field value '{args.field}'")
         self._accepts = message_filter(args.filter)
-        self._shown = message_yaml.Shown(
+        self._shown = Shown(
             length=None if args.full_length else args.truncate_length,
             arrays=not args.no_arr,
             strings=not args.no_str,
@@ -183,16 +180,16 @@ class _Echo:
     def _text(self, value: Any, info: dict[str, Any] | None) -> str:
         is_message = hasattr(value, "get_fields_and_field_types")
         if self._args.json:
-            return f"{message_yaml.to_json(value)}\n---\n"
+            return f"{to_json(value)}\n---\n"
         if not is_message:
             heading = f"{_INFO_HEADING}{info}\n{_DATA_HEADING}" if info else ""
             return f"{heading}{value}\n---\n"
         if self._args.csv:
-            row = message_yaml.to_csv(value, self._shown)
+            row = to_csv(value, self._shown)
             columns = [str(column) for column in (info or {}).values()]
             return ",".join([*columns, row]) + "\n"
         heading = f"{yaml.safe_dump(info)}---\n" if info else ""
-        body = message_yaml.to_yaml(value, self._shown, self._args.flow_style)
+        body = to_yaml(value, self._shown, self._args.flow_style)
         return f"{heading}{body}---\n"
 
 

@@ -8,12 +8,19 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections import deque
+from collections.abc import Collection
 from typing import Any
 
-from ros2_verbs.arguments import positive_int
-from ros2_verbs.measuring import add_measuring_arguments, measured_topic
-from ros2_verbs.message_filter import message_filter
-from ros2_verbs.window import RateWindow
+from biped_common.timing import NS_PER_S
+from ros2_verbs.messages.filter import message_filter
+from ros2_verbs.options import positive_int
+from ros2_verbs.topic.measuring import (
+    add_measuring_arguments,
+    measure,
+    measured_topic,
+    spread_text,
+)
 
 _WINDOW = 10000
 
@@ -38,8 +45,8 @@ def main(args: argparse.Namespace) -> int:
     """Print the rate once a second, until interrupted."""
     accepts = message_filter(args.filter)
     window = RateWindow(args.window)
-    with measured_topic(args) as topic:
-        clock = topic.node.get_clock()
+    with measured_topic(args) as (node, kind):
+        clock = node.get_clock()
         in_sim_time = args.use_sim_time and not args.wall_time
 
         def take(message: Any) -> None:
@@ -50,5 +57,52 @@ def main(args: argparse.Namespace) -> int:
             if report is not None:
                 print(report)
 
-        topic.measure(take, raw=accepts is None)
+        measure(args, node, kind, take, raw=accepts is None)
     return 0
+
+
+class RateWindow:
+    """Rate of arrival, over the last intervals, once a second."""
+
+    def __init__(self, size: int) -> None:
+        """Begin without messages.
+
+        Args:
+            size: the most intervals that count.
+        """
+        self._intervals_ns: deque[int] = deque(maxlen=size)
+        self._first_ns: int | None = None
+        self._last_ns = 0
+        self._reported_ns = 0
+
+    def arrived(self, now_ns: int) -> str | None:
+        """Take in a message; return a report if it is time for one.
+
+        Args:
+            now_ns: time of arrival; where it goes back, all begins anew.
+        """
+        if now_ns == 0:  # simulated time has not begun
+            return self._reset()
+        if self._first_ns is None or now_ns < self._first_ns:
+            self._intervals_ns.clear()
+            self._first_ns = self._last_ns = self._reported_ns = now_ns
+            return None
+        self._intervals_ns.append(now_ns - self._last_ns)
+        self._last_ns = now_ns
+        if now_ns < self._reported_ns + NS_PER_S:
+            return None
+        self._reported_ns = now_ns
+        return rate_report(self._intervals_ns)
+
+    def _reset(self) -> str | None:
+        had_some = bool(self._intervals_ns)
+        self._intervals_ns.clear()
+        self._first_ns = None
+        return "time has reset, resetting counters" if had_some else None
+
+
+def rate_report(intervals_ns: Collection[int]) -> str:
+    """Return what is printed for at least one interval between messages."""
+    total_ns = sum(intervals_ns)
+    rate_hz = len(intervals_ns) * NS_PER_S / total_ns if total_ns > 0 else 0.0
+    return f"average rate: {rate_hz:.3f}\n{spread_text(intervals_ns)}"

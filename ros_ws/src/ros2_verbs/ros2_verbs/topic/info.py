@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import argparse
 
-from ros2_verbs import completion
 from ros2_verbs.errors import VerbError
-from ros2_verbs.graph_node import add_graph_arguments, discover, graph_node
-from ros2_verbs.topics import full_name, is_known
+from ros2_verbs.graph.endpoints import TOPICS, full_topic_name, topic_types
+from ros2_verbs.graph.session import discover, graph_node
+from ros2_verbs.options import add_graph_arguments
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
     add_graph_arguments(parser)
-    completion.completed(
-        parser.add_argument("topic_name", help="topic, e.g. /joint_states"),
-        completion.topic_names,
-    )
+    TOPICS.add_name_argument(parser)
     parser.add_argument(
         "-v",
         "--verbose",
@@ -26,11 +23,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Print type and endpoints."""
+    """Print type and endpoints.
+
+    Raises:
+        VerbError: there is no such topic.
+    """
     with graph_node(args) as node:
-        discover(args, until=lambda: is_known(node, args.topic_name))
-        name = full_name(node, args.topic_name)
-        types = dict(node.get_topic_names_and_types()).get(name)
+        name = full_topic_name(node, args.topic_name)
+        discover(args, lambda: bool(topic_types(node, name)))
+        types = topic_types(node, name)
         if not types:
             raise VerbError(f"Unknown topic '{args.topic_name}'")
         end = "\n\n" if args.verbose else "\n"

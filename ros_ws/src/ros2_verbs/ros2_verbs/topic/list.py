@@ -6,20 +6,15 @@ import argparse
 
 from rclpy.node import Node
 
-from ros2_verbs.listing import add_listing_arguments, listed, print_listed
-from ros2_verbs.topics import add_hidden_topics_argument, topics_and_types
+from ros2_verbs.graph.endpoints import TOPICS, with_types
+from ros2_verbs.graph.names import print_listed
+from ros2_verbs.graph.session import whole_graph
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
-    add_listing_arguments(parser, "topics")
-    parser.add_argument(
-        "-t",
-        "--show-types",
-        action="store_true",
-        help="additionally show the topic type",
-    )
-    add_hidden_topics_argument(parser)
+    TOPICS.add_listing_arguments(parser)
+    TOPICS.add_show_types_argument(parser)
     parser.add_argument(
         "-v",
         "--verbose",
@@ -30,23 +25,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Print the topics."""
-    detailed = args.verbose and not args.only_count
-
-    def look(node: Node) -> list[str]:
-        topics = topics_and_types(node, include_hidden=args.include_hidden_topics)
-        if detailed:
-            return _directions(node, topics)
-        return [
-            f"{name} [{', '.join(types)}]" if args.show_types else name
-            for name, types in topics
-        ]
-
-    print_listed(args, listed(args, look))
+    if args.verbose and not args.only_count:
+        lines = whole_graph(
+            args, lambda node: _directions(node, hidden=args.include_hidden)
+        )
+    else:
+        lines = with_types(args, TOPICS.found(args))
+    print_listed(args, lines)
     return 0
 
 
-def _directions(node: Node, topics: list[tuple[str, list[str]]]) -> list[str]:
+def _directions(node: Node, *, hidden: bool) -> list[str]:
     """Return who publishes and who subscribes, in lines."""
+    topics = TOPICS.known(node, hidden=hidden)
     lines = []
     for title, noun, count in (
         ("Published", "publisher", node.count_publishers),

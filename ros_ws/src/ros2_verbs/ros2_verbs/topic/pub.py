@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import argparse
-import sys
+import math
 import time
 from typing import Any
 
-from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.task import Future
 
-from ros2_verbs import completion
-from ros2_verbs.arguments import positive_float, unsigned_int
 from ros2_verbs.errors import VerbError
-from ros2_verbs.graph_node import (
+from ros2_verbs.graph.endpoints import TOPICS
+from ros2_verbs.graph.qos import add_qos_arguments, profile_of
+from ros2_verbs.graph.session import caught, graph_node, spin
+from ros2_verbs.messages.fill import add_values_arguments, fill, given_values
+from ros2_verbs.messages.text import to_yaml
+from ros2_verbs.messages.types import complete_message_types, interface_class
+from ros2_verbs.options import (
     add_node_arguments,
-    caught,
-    graph_node,
-    spin,
+    completed,
+    positive_float,
+    unsigned_int,
 )
-from ros2_verbs.message_fill import Stamp, fill, values_of
-from ros2_verbs.message_types import message_class
-from ros2_verbs.qos_options import add_qos_arguments, profile_of
 
 _KEEP_ALIVE_S = 0.1
 _WAIT_POLL_S = 0.1
@@ -31,27 +31,16 @@ _WAIT_REPORT_S = 1.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
-    completion.completed(
-        parser.add_argument("topic_name", help="topic, e.g. /chatter"),
-        completion.topic_names,
-    )
-    completion.completed(
+    TOPICS.add_name_argument(parser)
+    completed(
         parser.add_argument("message_type", help="type, e.g. std_msgs/msg/String"),
-        completion.message_names,
+        complete_message_types,
     )
-    values = parser.add_mutually_exclusive_group()
-    completion.completed(
-        values.add_argument(
-            "values",
-            nargs="?",
-            default="{}",
-            help="what to fill the message with, in YAML, e.g. 'data: Hello'; the rest "
-            "keeps its defaults; a header may be 'auto' and a time 'now'",
-        ),
-        completion.message_prototype,
-    )
-    values.add_argument(
-        "--stdin", action="store_true", help="read the values from standard input"
+    add_values_arguments(
+        parser,
+        "what to fill the message with, in YAML, e.g. 'data: Hello'; the rest keeps "
+        "its defaults; a header may be 'auto' and a time 'now'",
+        _complete_message,
     )
     parser.add_argument(
         "-r",
@@ -93,6 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-wait-time-secs",
         type=positive_float,
         metavar="SECONDS",
+        default=math.inf,
         help="the longest wait for subscriptions (default: endless)",
     )
     parser.add_argument(
@@ -108,20 +98,39 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Publish until interrupted, or as often as the options say."""
-    message = message_class(args.message_type)()
-    stamps = fill(message, values_of(sys.stdin.read() if args.stdin else args.values))
+    """Publish until interrupted, or as often as the options say.
+
+    Raises:
+        VerbError: the type or the values are wrong, or too few subscribe.
+    """
+    message = interface_class(args.message_type, "msg")()
+    stamps = fill(message, given_values(args))
     times = 1 if args.once else args.times
     with graph_node(args, args.node_name) as node:
         publisher = node.create_publisher(
             type(message), args.topic_name, profile_of(args)
         )
+        clock = node.get_clock()
+        finished: Future = Future()
+        count = 0
+
+        def publish() -> None:
+            nonlocal count
+            count += 1
+            now = clock.now().to_msg()
+            for stamp in stamps:
+                stamp(now)
+            if args.print and count % args.print == 0:
+                print(f"publishing #{count}: {message!r}\n")
+            publisher.publish(message)
+            if count == times:
+                finished.set_result(None)
+
         _await_subscriptions(publisher, args, default=1 if times else 0)
         print("publisher: beginning loop")
-        loop = _PublishingLoop(node, publisher, message, stamps, args.print, times)
-        loop.publish()
-        node.create_timer(1.0 / args.rate, caught(loop.finished, loop.publish))
-        spin(node, loop.finished)
+        publish()
+        node.create_timer(1.0 / args.rate, caught(finished, publish))
+        spin(node, finished)
         time.sleep(args.keep_alive)
     return 0
 
@@ -135,7 +144,7 @@ def _await_subscriptions(
     reported = -_WAIT_REPORT_S
     while (found := publisher.get_subscription_count()) < wanted:
         waited_s = time.monotonic() - began
-        if args.max_wait_time_secs is not None and waited_s >= args.max_wait_time_secs:
+        if waited_s >= args.max_wait_time_secs:
             raise VerbError(
                 f"Timed out waiting for subscribers: Expected {wanted} subscribers but "
                 f"only got {found} subscribers"
@@ -146,45 +155,5 @@ def _await_subscriptions(
         time.sleep(_WAIT_POLL_S)
 
 
-class _PublishingLoop:
-    """Publishes a message again and again."""
-
-    def __init__(
-        self,
-        node: Node,
-        publisher: Publisher,
-        message: Any,
-        stamps: list[Stamp],
-        print_every: int,
-        times: int,
-    ) -> None:
-        """Begin.
-
-        Args:
-            node: whose clock stamps the messages.
-            publisher: of the topic.
-            message: what is published.
-            stamps: set its times anew.
-            print_every: print each so many messages; 0 prints none.
-            times: how often to publish; 0 for ever.
-        """
-        self.finished: Future = Future()
-        self._clock = node.get_clock()
-        self._publisher = publisher
-        self._message = message
-        self._stamps = stamps
-        self._print_every = print_every
-        self._times = times
-        self._count = 0
-
-    def publish(self) -> None:
-        """Publish once more."""
-        self._count += 1
-        now = self._clock.now().to_msg()
-        for stamp in self._stamps:
-            stamp(now)
-        if self._print_every and self._count % self._print_every == 0:
-            print(f"publishing #{self._count}: {self._message!r}\n")
-        self._publisher.publish(self._message)
-        if self._count == self._times:
-            self.finished.set_result(None)
+def _complete_message(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
+    return [to_yaml(interface_class(parsed_args.message_type, "msg")())]

@@ -1,0 +1,1 @@
+"""The player: a bag on the graph again, as it was recorded."""

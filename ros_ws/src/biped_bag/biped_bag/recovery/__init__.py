@@ -1,0 +1,1 @@
+"""What `biped bag recover` does: a broken bag made sound, and what is lost counted."""

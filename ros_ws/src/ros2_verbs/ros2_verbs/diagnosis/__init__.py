@@ -1,1 +1,0 @@
-"""What `ros2 doctor` looks at: the host, the installation, and the graph."""

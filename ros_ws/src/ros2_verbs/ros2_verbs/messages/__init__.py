@@ -1,0 +1,1 @@
+"""Messages: their types by name, shown as text, filled from text, filtered."""

@@ -1,0 +1,70 @@
+"""Options of many verbs, and the kinds of numbers that they take; without rclpy."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+DISCOVERY_S = 0.5
+
+
+def add_graph_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add --spin-time, --use-sim-time and --no-daemon."""
+    parser.add_argument(
+        "--no-daemon",
+        action="store_true",
+        help="accepted for compatibility: there is no daemon here",
+    )
+    add_node_arguments(parser)
+
+
+def add_node_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add --spin-time and --use-sim-time."""
+    parser.add_argument(
+        "--spin-time",
+        type=float,
+        default=DISCOVERY_S,
+        metavar="SECONDS",
+        help=f"time to wait for discovery (default: {DISCOVERY_S} s)",
+    )
+    parser.add_argument(
+        "-s", "--use-sim-time", action="store_true", help="take time from /clock"
+    )
+
+
+def completed(action: argparse.Action, completer: Any) -> None:
+    """Have argcomplete ask a function for an argument's values."""
+    # argcomplete looks for this attribute, which argparse does not declare.
+    action.completer = completer  # type: ignore[attr-defined]
+
+
+def positive_int(text: str) -> int:
+    """Parse a whole number above 0."""
+    return _checked_int(text, 1, "a positive integer")
+
+
+def unsigned_int(text: str) -> int:
+    """Parse a whole number that is not negative."""
+    return _checked_int(text, 0, "a non-negative integer")
+
+
+def positive_float(text: str) -> float:
+    """Parse a finite number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text}: must be a positive number")
+    return value
+
+
+def _checked_int(text: str, least: int, kind: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = least - 1
+    if value < least:
+        raise argparse.ArgumentTypeError(f"{text}: must be {kind}")
+    return value

@@ -1,0 +1,47 @@
+"""The physics engines there are, loaded only when they are wanted."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Final, NamedTuple
+
+from sim_node.errors import EngineMissingError
+from sim_node.physics import Physics
+
+
+class Engine(NamedTuple):
+    """Where an engine is, and what it cannot do."""
+
+    module: str
+    plant: str
+    """Name of its class in the module, a `Physics`."""
+    unfelt: tuple[str, ...] = ()
+    """Disturbances that have no effect on it."""
+
+
+ENGINES: Final = {
+    "pybullet": Engine("sim_node.pybullet_world", "PyBulletWorld"),
+    "kinematic": Engine(
+        "sim_node.kinematic_world",
+        "KinematicWorld",
+        unfelt=("friction", "torque_limit_factor"),
+    ),
+}
+
+
+def plant_of(engine: str) -> type[Physics]:
+    """Return the plant of an engine, to be built.
+
+    Raises:
+        EngineMissingError: what it needs is not installed.
+    """
+    found = ENGINES[engine]
+    try:
+        module = importlib.import_module(found.module)
+    except ImportError as error:
+        raise EngineMissingError(
+            f"sim.engine = {engine!r}: cannot be loaded, {error}; "
+            "kinematic needs nothing"
+        ) from error
+    plant: type[Physics] = getattr(module, found.plant)
+    return plant

@@ -1,0 +1,112 @@
+"""The seam to a physics engine: what a plant can do. World frame, SI units.
+
+A plant is a floor at z = 0 with one robot, stepped one control tick of 2 ms at a time.
+Several live in one process without feeling each other. Joints are in the order of
+`JOINT_NAMES`, links in that of `LINK_NAMES`. docs/engines.md says how to add one.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from biped_description.robot import Robot
+from sim_node.contact import FloorContact
+
+Point: TypeAlias = tuple[float, float]
+Vector: TypeAlias = tuple[float, float, float]
+
+
+class JointStates(NamedTuple):
+    """What the joints measure."""
+
+    position: tuple[float, ...]
+    """(12,) [rad]"""
+    velocity: tuple[float, ...]
+    """(12,) [rad/s]"""
+    torque: tuple[float, ...]
+    """(12,) of the servos [N m]"""
+
+
+class WaistState(NamedTuple):
+    """Where the torso is: its frame has the waist as its origin."""
+
+    position: Vector
+    """[m]"""
+    velocity: Vector
+    """[m/s]"""
+
+
+class Physics(Protocol):
+    """One plant. Numbers that the physics leaves undefined are handed out as NaN."""
+
+    def __init__(
+        self, robot: Robot, friction: float, torque_limits_nm: NDArray[np.float64]
+    ) -> None:
+        """Build the plant.
+
+        Args:
+            robot: that stands in it.
+            friction: lateral, between sole and floor [].
+            torque_limits_nm: (12,) that the servos can reach.
+        """
+
+    def set_mass_factors(self, factors: NDArray[np.float64]) -> None:
+        """Scale the nominal mass and inertia of the (13,) links."""
+
+    # -- motion --------------------------------------------------------------------
+
+    def place(self, waist: NDArray[np.float64], q: NDArray[np.float64]) -> None:
+        """Put the robot at rest, upright: waist (3,) [m], joints (12,) [rad]."""
+
+    def command(self, q: list[float], dq: list[float]) -> None:
+        """Tell the servos where the joints are to be.
+
+        Args:
+            q: (12,) reference positions now [rad].
+            dq: (12,) reference velocities until the next tick [rad/s].
+        """
+
+    def push(self, force_n: Vector) -> None:
+        """Push the torso at its CoM during the next control tick."""
+
+    def step(self) -> None:
+        """Go on by one control tick."""
+
+    # -- readings, after a step ----------------------------------------------------
+
+    def joints(self) -> JointStates:
+        """Return what the joints measure."""
+
+    def contact(self, held: Point) -> FloorContact:
+        """Return what the floor felt in the last step.
+
+        With no load on either foot there is no ZMP: loads are zero, and the ZMP is the
+        one `held` from the tick before.
+        """
+
+    def waist(self) -> WaistState:
+        """Return where the waist is and how it moves."""
+
+    def torso_orientation(self) -> tuple[float, float, float, float]:
+        """Return the torso's orientation, a quaternion (x, y, z, w)."""
+
+    # -- states --------------------------------------------------------------------
+
+    def save(self) -> int:
+        """Keep the present state; return its handle."""
+
+    def load(self, handle: int) -> None:
+        """Go back to a kept state, bit for bit.
+
+        Raises:
+            SnapshotError: it is not kept by this plant.
+        """
+
+    def release(self, handle: int) -> None:
+        """Forget a kept state."""
+
+    def close(self) -> None:
+        """Free what the plant holds; harmless when repeated."""

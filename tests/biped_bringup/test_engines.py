@@ -1,0 +1,90 @@
+"""The command line on either engine, and without what an engine would need."""
+
+import subprocess
+import sys
+
+import pytest
+from tests.biped_bringup.runs import SHORT, learn, quick, record
+
+KINEMATIC = ("--set", "sim.engine=kinematic")
+# As on a Python for which there are no wheels of PyBullet.
+WITHOUT_PYBULLET = """
+import sys
+sys.modules["pybullet"] = None
+import sim_node.node  # all that the graph would need
+from biped_bringup.cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def run_without_pybullet(folder, *arguments) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", WITHOUT_PYBULLET, *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def test_the_static_walk_fails_on_the_kinematic_engine_too(biped):
+    outcome = biped("walk", "--static", "--json", *KINEMATIC)
+    assert (outcome.status, outcome.values["end_cause"]) == (1, "zmp_error")
+    assert outcome.values["t_err_terms"]["joint_torque"] == 0.0
+
+
+def test_a_walk_is_learned_on_the_kinematic_engine_and_walked_on_the_other(biped):
+    short = [word for change in SHORT for word in ("--set", change)]
+    learned = biped("learn", "--preset", "quick", *short, *KINEMATIC, "--out", "out")
+    assert learned.status == 0
+    for engine in ("kinematic", "pybullet"):
+        changed = ("--set", f"sim.engine={engine}")
+        walked = biped("walk", "--json", "--memory", "out/memory.npz", *changed)
+        assert (walked.status, walked.values["completed"]) == (0, True)
+
+
+def test_a_run_on_the_kinematic_engine_goes_on_bit_for_bit(training, tmp_path):
+    settings = quick("sim.engine=kinematic", "sim.disturbances.push_force_n=5")
+    whole = learn(training(settings), 8)
+    half = learn(training(settings), 4)
+    half.save(tmp_path / "memory.npz")
+    resumed = learn(training(tmp_path / "memory.npz"), 8)
+    assert record(resumed) == record(whole)
+
+
+def test_a_disturbance_without_effect_is_refused_in_one_line(biped):
+    outcome = biped("check", *KINEMATIC, "--set", "sim.disturbances.friction=0.5")
+    assert (outcome.status, outcome.err) == (
+        2,
+        "biped check: sim.disturbances.friction = 0.5: must be 0.9: it has no effect "
+        "with engine = kinematic\n",
+    )
+
+
+def test_an_unknown_engine_is_refused_with_those_there_are(biped):
+    outcome = biped("check", "--set", "sim.engine=bullet")
+    assert outcome.status == 2
+    assert "sim.engine = 'bullet': must be one of pybullet, kinematic" in outcome.err
+
+
+# -- without PyBullet ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("walk", "--static", "--set", "sim.limits.zmp_error_m=1.0"),
+        ("learn", "--preset", "quick", "--set", "gait.steps=1", "--out", "out"),
+    ],
+    ids=["walk", "learn"],
+)
+def test_the_kinematic_engine_needs_no_pybullet(tmp_path, arguments):
+    done = run_without_pybullet(tmp_path, *arguments, *KINEMATIC)
+    assert done.returncode == 0, done.stderr
+
+
+def test_an_engine_that_is_not_installed_is_refused_in_one_line(tmp_path):
+    done = run_without_pybullet(tmp_path, "walk", "--static")
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+    assert done.stderr.startswith("biped walk: sim.engine = 'pybullet': cannot be ")
