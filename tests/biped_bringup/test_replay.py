@@ -11,7 +11,7 @@ from tests.biped_bringup.runs import SHORT, quick
 
 from biped_bringup.replay import NODE_BYTES, SNAPSHOT_BYTES, ReplayingWalker
 from biped_bringup.walker import Walker
-from learner_node.walking.frozen import FrozenWalk
+from learner_node.walking.walks import FrozenWalk
 from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from sim_node.errors import WorldClosedError
