@@ -94,7 +94,7 @@ class WaistReference:
             TrajectoryError: the correction is not two finite numbers, or the walk is
                 over.
         """
-        if action_m.shape != (2,) or not math.isfinite(sum(action_m)):
+        if action_m.shape != (2,) or not math.isfinite(sum(action_m.tolist())):
             raise TrajectoryError(
                 f"correction {action_m}: must be two finite numbers [m]"
             )
@@ -102,8 +102,7 @@ class WaistReference:
             raise TrajectoryError(f"the walk of {self.plan.ticks} ticks is over")
         first = self._tick
         rows = slice(first, first + self.rows)
-        waist = self.static_waist[rows].copy()
-        waist[:, :2] += self._spline.push(action_m)
+        waist = self._spline.push(action_m, self.static_waist[rows])
         n_ticks = min(TICKS_PER_LEARNING_TICK, self.plan.ticks - first)
         self._tick += n_ticks
         plan = self.plan
