@@ -14,6 +14,7 @@ import sys
 PARTS = (
     "environment_tick",
     "learner_tick",
+    "replay",
     "realtime",
     "lockstep",
     "recorder",

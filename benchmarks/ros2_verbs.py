@@ -1,4 +1,4 @@
-"""What `ros2` costs: wall time of short verbs, CPU of `topic hz` at 500 Hz.
+"""What `ros2` costs: wall time of short verbs and of TAB, CPU of `topic hz` at 500 Hz.
 
 Wall time includes the start of the interpreter, rclpy and discovery. The publisher
 announces itself as the supervisor's nodes do.
@@ -6,6 +6,7 @@ announces itself as the supervisor's nodes do.
 
 from __future__ import annotations
 
+import os
 import re
 import resource
 import signal
@@ -13,10 +14,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from statistics import median
 
 from benchmarks.report import Figure
 from biped_ros.environment import node_environment, private_domain
 
+_ROS2 = (sys.executable, "-m", "ros2_verbs.main")
 _TOPIC = "/joint_states"
 _VERBS = (
     ("topic", "list"),
@@ -31,6 +34,8 @@ _VERBS = (
     ("doctor", "--report"),
     ("interface", "show", "sensor_msgs/msg/JointState"),
 )
+_LINES = ("ros2 to", "ros2 topic e")
+_TAB_BOUND = 6.0  # times a start of Python
 _REPEATS = 5
 _VERB_BOUND_S = 1.5
 _HZ_S = 10.0
@@ -63,9 +68,13 @@ def measure() -> Iterator[Figure]:
     try:
         time.sleep(2.0)
         for words in _VERBS:
-            times = sorted(_wall_time_s(words, environment) for _ in range(_REPEATS))
             name = f"ros2 {' '.join(words)}, median of {_REPEATS}"
-            yield Figure(name, times[_REPEATS // 2], "s", _VERB_BOUND_S)
+            time_s = _wall_time_s(_ROS2 + words, environment)
+            yield Figure(name, time_s, "s", _VERB_BOUND_S)
+        start_s = _wall_time_s((sys.executable, "-c", ""), environment)
+        for line in _LINES:
+            time_s = _wall_time_s(_ROS2, environment | _completing(line))
+            yield Figure(f"{line}<TAB>", time_s / start_s, "starts", _TAB_BOUND)
         rate_hz, cpu_share = _hz(environment)
         yield Figure(f"ros2 topic hz {_TOPIC}, CPU", 100.0 * cpu_share, "%", 50.0)
         yield Figure(
@@ -79,21 +88,28 @@ def measure() -> Iterator[Figure]:
         publisher.wait()
 
 
-def _wall_time_s(words: tuple[str, ...], environment: dict[str, str]) -> float:
-    begin = time.monotonic()
-    subprocess.run(
-        [sys.executable, "-m", "ros2_verbs.main", *words],
-        env=environment,
-        stdout=subprocess.DEVNULL,
-        check=True,
-    )
-    return time.monotonic() - begin
+def _completing(line: str) -> dict[str, str]:
+    return {
+        "_ARGCOMPLETE": "1",
+        "_ARGCOMPLETE_STDOUT_FILENAME": os.devnull,
+        "COMP_LINE": line,
+        "COMP_POINT": str(len(line)),
+    }
+
+
+def _wall_time_s(command: tuple[str, ...], environment: dict[str, str]) -> float:
+    times_s = []
+    for _ in range(_REPEATS):
+        begin = time.monotonic()
+        subprocess.run(command, env=environment, stdout=subprocess.DEVNULL, check=True)
+        times_s.append(time.monotonic() - begin)
+    return median(times_s)
 
 
 def _hz(environment: dict[str, str]) -> tuple[float, float]:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.Popen(
-        [sys.executable, "-m", "ros2_verbs.main", "topic", "hz", _TOPIC],
+        [*_ROS2, "topic", "hz", _TOPIC],
         env=environment,
         stdout=subprocess.PIPE,
         text=True,

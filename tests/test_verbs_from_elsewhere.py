@@ -1,6 +1,5 @@
 """Verbs and commands that come with a package outside this repository."""
 
-import importlib.metadata
 import os
 import subprocess
 import sys
@@ -8,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from biped_common.entry_points import entry_points
+from biped_common.verbs import entry_points
 
 BIPED = "biped_bringup.cli.main"
 ROS2 = "ros2_verbs.main"
@@ -197,32 +196,10 @@ def test_verbs_of_somebody_elses_are_completed(
     assert answer.read_text().strip() == offered
 
 
-def test_entry_points_are_those_that_importlib_finds() -> None:
-    theirs = importlib.metadata.entry_points()
-    for group in theirs.groups:
-        ours = {
-            name: f"{point.module}:{point.attribute}".rstrip(":")
-            for name, point in entry_points(group).items()
-        }
-        assert ours == {p.name: p.value for p in theirs.select(group=group)}
-
-
-def test_an_entry_point_may_have_extras_and_spaces(
-    stranger: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.syspath_prepend(str(stranger))
-    point = entry_points("biped.bag_verbs")["dance"]
-    assert (point.module, point.attribute, point.package) == (
-        "stranger",
-        "add_parser",
-        "stranger",
-    )
-
-
 def test_of_two_entry_points_of_one_name_the_first_on_the_path_counts(
     stranger: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = stranger / "stranger-1.0.dist-info" / "entry_points.txt"
     file.write_text("[biped.verbs]\nlearn = stranger:add_parser\n")
     monkeypatch.syspath_prepend(str(stranger))
-    assert entry_points("biped.verbs")["learn"].package == "stranger"
+    assert entry_points("biped.verbs")["learn"].module == "stranger"

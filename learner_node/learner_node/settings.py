@@ -13,7 +13,7 @@ class LearnerNodeSettings(Settings):
     """The learner, its seed, and where it is kept."""
 
     learner: LearnerSettings = section(LearnerSettings)
-    seed: int = setting(0, "", "of every random choice", lower=0)
+    seed: int = setting(0, "", "of every random choice", lower=0, upper=2**63 - 1)
     walk_ticks: int = setting(
         5625, "control ticks", "the whole walk, the last target", lower=1
     )

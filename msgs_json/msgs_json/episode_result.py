@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
+from msgs_json.bounds import Count, Digest
 from msgs_json.end_cause import EndCause
-from msgs_json.observation import Count
 
 
 class CostTerms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -69,7 +69,7 @@ class EpisodeResult(
     """rwd of Table 2, or 0."""
     subtask: Count
     """0-based place in the learning schedule."""
-    trajectory_sha256: str
+    trajectory_sha256: Digest
     """Hash of all that the walk measured."""
     schedule_complete: bool
     """The last subtask has been passed, now or before."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import msgspec
+from typing import Annotated
 
-from msgs_json.observation import Count
+import msgspec
+from msgspec import Meta
+
+from msgs_json.bounds import Count, Digest, Name, Seed
 
 
 class LearnerStatus(
@@ -17,11 +20,11 @@ class LearnerStatus(
 ):
     """State of the schedule and of the memory between two episodes."""
 
-    instance: str
+    instance: Name
     """learner-START_NS-HOST:PROCESS of the one learner of the graph."""
     active: bool
     """Takes part; before, it listens whether another one does."""
-    seed: Count
+    seed: Seed
     """Of the session's random choices."""
     target_time_s: float
     """Walking time that the present subtask asks for [s]."""
@@ -35,7 +38,7 @@ class LearnerStatus(
     """Learning episodes so far."""
     survival: float
     """Walked over target time, mean of the last episodes."""
-    figures: dict[str, float]
+    figures: Annotated[dict[Name, float], Meta(max_length=50)]
     """What there is to know about the memory, under names of the learner's own."""
     t_err_estimate: float | None
     """T_err-hat of the present subtask; None before its first completed walk."""
@@ -47,7 +50,7 @@ class LearnerStatus(
     """Learning is switched off by a user; walks are greedy."""
     simulated_s: float
     """Walked in all learning episodes [s]."""
-    memory_sha256: str
+    memory_sha256: Digest
     """Hash of all that was learned."""
-    trajectory_sha256: str
+    trajectory_sha256: Digest
     """Chained over the learning episodes."""

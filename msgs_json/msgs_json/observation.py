@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import msgspec
 
+from msgs_json.bounds import Count, Digest, Name
 from msgs_json.end_cause import EndCause
-
-Count = Annotated[int, msgspec.Meta(ge=0)]
 
 
 class PhaseFlags(
@@ -51,7 +48,7 @@ class Observation(
     integrals run over all of its control ticks.
     """
 
-    simulation: str
+    simulation: Name
     """Name of the simulation's run; a clock belongs to it."""
     episode: Count
     """Number of the walk, from 1, as the simulation counts."""
@@ -81,7 +78,7 @@ class Observation(
     """Mean over the joints of |q_ref - q| at the last control tick [rad]."""
     mean_joint_velocity_error_rad_s: float
     """Mean over the joints of |dq_ref - dq| at the last control tick [rad/s]."""
-    trajectory_sha256: str
+    trajectory_sha256: Digest
     """Hash of all that the walk measured so far."""
     end_cause: EndCause | None = None
     """Set when the walk ended within this learning tick."""

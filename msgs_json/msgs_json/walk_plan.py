@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import msgspec
+from typing import Annotated
 
-from msgs_json.observation import Count
+import msgspec
+from msgspec import Meta
+
+from msgs_json.bounds import Count
 
 Point = tuple[float, float, float]
 
@@ -42,5 +45,5 @@ class WalkPlan(
     """Point of the right sole under the ankle at the start [m]."""
     zmp_m: tuple[float, float]
     """Reference ZMP at the start [m]."""
-    phases: tuple[GaitPhase, ...]
+    phases: Annotated[tuple[GaitPhase, ...], Meta(max_length=500)]
     """In order, the first from tick 0; the last one goes on."""

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from biped_common.errors import BipedError
+from msgs_json.bounds import MOST_CHARACTERS
 
 Payload = TypeVar("Payload", bound=msgspec.Struct)
 
@@ -52,12 +53,18 @@ def decode(kind: type[Payload], text: str | bytes) -> Payload:
     Raises:
         MalformedMessageError: not JSON, or not a payload of this kind and version.
     """
+    if len(text) > MOST_CHARACTERS:
+        raise MalformedMessageError(
+            f"{kind.__name__}: {len(text)} characters, {MOST_CHARACTERS} at most"
+        )
     try:
         # msgspec takes a version that is missing altogether for the right one.
         msgspec.json.decode(text, type=_versions_of(kind))
         return msgspec.json.decode(text, type=kind)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise MalformedMessageError(f"{kind.__name__}: {error}") from None
+    except RecursionError:
+        raise MalformedMessageError(f"{kind.__name__}: nested too deep") from None
 
 
 def _not_finite(value: object, place: str) -> Iterator[str]:

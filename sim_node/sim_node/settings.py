@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
 from biped_description.settings import RobotSettings
 from sim_node.engines import ENGINES
 
 
 @dataclass(frozen=True)
-class LimitSettings:
+class LimitSettings(Settings):
     """What ends a walk, besides the robot's own velocity limit."""
 
     zmp_error_m: float = setting(
@@ -26,13 +26,9 @@ class LimitSettings:
         0.01, "m", "a sole this deep in the floor is a fault of the physics", above=0.0
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class DisturbanceSettings:
+class DisturbanceSettings(Settings):
     """Differences between the robot as planned and the robot as it is.
 
     Random ones are drawn anew for every walk from the generator given to the robot.
@@ -66,10 +62,6 @@ class DisturbanceSettings:
         upper=1.0,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
     @property
     def random(self) -> bool:
         """Whether chance has a part in the walks, so that no two are the same."""
@@ -84,7 +76,7 @@ class DisturbanceSettings:
 
 
 @dataclass(frozen=True)
-class SimSettings:
+class SimSettings(Settings):
     """The simulated robot."""
 
     engine: str = setting(
@@ -96,9 +88,8 @@ class SimSettings:
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range, and disturbances that would have no effect."""
-        check_ranges(self)
+    def check_together(self) -> None:
+        """Refuse disturbances that would have no effect."""
         for name in ENGINES[self.engine].unfelt:
             value = getattr(self.disturbances, name)
             nominal = getattr(DisturbanceSettings(), name)
@@ -111,12 +102,12 @@ class SimSettings:
 
 
 @dataclass(frozen=True)
-class SimNodeSettings:
+class SimNodeSettings(Settings):
     """All of the simulation node."""
 
     robot: RobotSettings = section(RobotSettings)
     sim: SimSettings = section(SimSettings)
-    seed: int = setting(0, "", "of the disturbances", lower=0)
+    seed: int = setting(0, "", "of the disturbances", lower=0, upper=2**63 - 1)
     pace: str = setting(
         "lockstep",
         "",
@@ -161,7 +152,3 @@ class SimNodeSettings:
         lower=0,
         upper=10,
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from rich.console import Console
-from tests.biped_bringup.runs import SHORT, learn, quick
+from tests.biped_bringup.runs import DISTURBED, SHORT, learn, quick
 
 from biped_bringup.cli.progress import TrainingProgress
 from biped_bringup.training import TrainingRun
@@ -40,6 +40,16 @@ def test_the_line_tells_the_state_of_the_run(run, plain):
     assert f"survival {100 * run.log.survival():.0f} %" in line
     assert f"basis states {figures['basis_states']}, fixed states" in line
     assert re.search(r"\d+\.\d simulated s/s$", line)
+
+
+def test_the_line_tells_how_much_was_replayed(run, plain):
+    share = 100 * run.walker.ticks.replayed_share
+    assert f"  replayed {share:.0f} %  " in TrainingProgress(run, plain).line()
+
+
+def test_the_line_says_where_nothing_is_replayed(training, plain):
+    run = training(quick(*SHORT, *DISTURBED))
+    assert "  replay off  " in TrainingProgress(run, plain).line()
 
 
 def test_the_line_says_when_the_schedule_is_complete(training, plain):

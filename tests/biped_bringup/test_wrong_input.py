@@ -61,6 +61,8 @@ NOT_UNDERSTOOD = {
     "learn --seed -1": r"--seed: -1: must be at least 0",
     "learn --seed one": r"--seed: invalid natural value: 'one'",
     "learn --episodes -1": r"--episodes: -1: must be at least 0",
+    "learn --replay-mb -1": r"--replay-mb: -1: must be at least 0",
+    "learn --no-replay --replay-mb 9": r"not allowed with argument --no-replay",
     "learn --preset fast": r"--preset: invalid choice: 'fast' .*paper.*coarse.*quick",
     "learn --checkpoint-every soon": r"invalid float value: 'soon'",
     "walk": r"one of the arguments --memory --static is required",

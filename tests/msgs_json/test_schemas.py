@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from importlib import resources
+from typing import Annotated, get_args, get_origin
 
 import jsonschema
 import msgspec
@@ -12,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from msgs_json import schemas
+from msgs_json.bounds import Digest, Name, Seed
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms
 from msgs_json.observation import Observation, PhaseFlags
@@ -31,15 +33,16 @@ EVERY_PAYLOAD = pytest.mark.parametrize("payload", PAYLOADS, ids=lambda p: p.__n
 # -- payloads of all kinds, by hypothesis ----------------------------------------------
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
-counts = st.integers(0, 2**63 - 1)
+counts = st.integers(0, 10**12)
 flags = st.booleans()
 FIELD_KINDS = {
     bool: flags,
-    str: st.text(),
     float: numbers,
     float | None: st.none() | numbers,
     tuple[float, float]: st.tuples(numbers, numbers),
-    dict[str, float]: st.dictionaries(st.text(), numbers, max_size=3),
+    Name: st.text(max_size=200),
+    Digest: st.text(max_size=64),
+    Seed: st.integers(0, 2**63 - 1),
     Point: st.tuples(numbers, numbers, numbers),
     EndCause: st.sampled_from(EndCause),
     EndCause | None: st.none() | st.sampled_from(EndCause),
@@ -56,7 +59,9 @@ def made(struct):
 def value(kind):
     if kind in FIELD_KINDS:
         return FIELD_KINDS[kind]
-    if kind == tuple[GaitPhase, ...]:
+    if get_origin(kind) is Annotated and get_origin(get_args(kind)[0]) is dict:
+        return st.dictionaries(FIELD_KINDS[Name], numbers, max_size=3)
+    if get_origin(kind) is Annotated and get_origin(get_args(kind)[0]) is tuple:
         return st.lists(made(GaitPhase), max_size=3).map(tuple)
     if kind == CostTerms | None:
         return st.none() | made(CostTerms)

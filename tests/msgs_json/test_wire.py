@@ -250,3 +250,40 @@ def test_a_payload_within_another_must_say_its_version():
     phase = json.loads(without(PHASE, "version"))
     said = refusal(OBSERVATION, changed(OBSERVATION, phase=phase))
     assert said.endswith("missing required field `version` - at `$.phase`")
+
+
+# -- hostile texts ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("depth", [100, 1_000, 40_000])
+@pytest.mark.parametrize("bracket", ["[]", '{"a":}'])
+def test_a_text_nested_without_end_is_malformed(depth, bracket):
+    before, after = bracket[:-1], bracket[-1]
+    assert refusal(OBSERVATION, before * depth + after * depth)
+
+
+def test_a_text_nested_within_a_payload_is_malformed():
+    nested = json.dumps(json.loads(encode(STATUS))).replace(
+        '"figures": {', '"figures": {"deep": ' + "[" * 20_000 + "]" * 20_000 + ", "
+    )
+    assert "figures" in nested
+    assert refusal(STATUS, nested)
+
+
+def test_a_text_longer_than_any_payload_is_not_even_read():
+    said = refusal(OBSERVATION, " " * 1_000_000 + encode(OBSERVATION))
+    assert "characters" in said
+
+
+@pytest.mark.parametrize("number", [10**12 + 1, 2**63, 10**30])
+@pytest.mark.parametrize(
+    ("payload", "field"),
+    [(p, f) for p, fields in COUNTS for f in fields if f != "seed"],
+)
+def test_a_count_that_no_run_reaches_is_refused(payload, field, number):
+    assert field in refusal(payload, changed(payload, **{field: number}))
+
+
+@pytest.mark.parametrize("seed", [2**63, 10**30])
+def test_a_seed_that_no_parameter_can_hold_is_refused(seed):
+    assert "seed" in refusal(STATUS, changed(STATUS, seed=seed))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import ros2_verbs
-from biped_common.entry_points import entry_points
+from biped_common.verbs import entry_points
 from ros2_verbs.main import COMMANDS, main, make_parser
 from ros2_verbs.real_ros2 import HANDED_OVER, find, foreign_environment
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import SettingsError, check_ranges, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
 from biped_common.timing import control_ticks
 from biped_description.settings import RobotSettings
 
@@ -16,7 +16,7 @@ LONGEST_LOOK_AHEAD_TICKS = 600
 
 
 @dataclass(frozen=True)
-class GaitSettings:
+class GaitSettings(Settings):
     """The walk: stand, shift over the left foot, `steps` steps, close, stand."""
 
     step_period_s: float = setting(
@@ -50,9 +50,8 @@ class GaitSettings:
         """Control ticks of the whole walk."""
         return control_ticks(self.duration_s)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range or at odds with one another."""
-        check_ranges(self)
+    def check_together(self) -> None:
+        """Refuse values at odds with one another."""
         if self.double_support_s >= self.step_period_s:
             raise SettingsError(
                 "double_support_s",
@@ -75,7 +74,7 @@ class GaitSettings:
 
 
 @dataclass(frozen=True)
-class CorrectionSettings:
+class CorrectionSettings(Settings):
     """The B-spline that smooths the learner's actions (Section 4.2)."""
 
     knot_spacing_s: float = setting(
@@ -84,13 +83,9 @@ class CorrectionSettings:
     )  # fmt: skip
     order: int = setting(3, "", "order of the B-spline (degree + 1)", lower=3, upper=4)
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)
-
 
 @dataclass(frozen=True)
-class TrajectorySettings:
+class TrajectorySettings(Settings):
     """All of the trajectory node."""
 
     robot: RobotSettings = section(RobotSettings)
@@ -106,7 +101,3 @@ class TrajectorySettings:
         lower=1,
         upper=LONGEST_LOOK_AHEAD_TICKS,
     )
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)

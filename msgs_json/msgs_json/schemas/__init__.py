@@ -12,7 +12,7 @@ import ast
 import inspect
 import json
 import re
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 
@@ -63,13 +63,14 @@ def schema_of(payload: type[msgspec.Struct]) -> dict[str, Any]:
     return {"$schema": _DIALECT, **schema}
 
 
-def _structs(payload: type[msgspec.Struct]) -> dict[str, type[msgspec.Struct]]:
-    """Return a payload and the structs in it, by name."""
-    found = {payload.__name__: payload}
-    for field in msgspec.structs.fields(payload):
-        for kind in getattr(field.type, "__args__", (field.type,)):
-            if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
-                found.update(_structs(kind))
+def _structs(kind: Any) -> dict[str, type[msgspec.Struct]]:
+    """Return all structs in a type, by name."""
+    if not (isinstance(kind, type) and issubclass(kind, msgspec.Struct)):
+        inner = [_structs(each) for each in get_args(kind)]
+        return {name: struct for found in inner for name, struct in found.items()}
+    found = {kind.__name__: kind}
+    for field in msgspec.structs.fields(kind):
+        found.update(_structs(field.type))
     return found
 
 

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from biped_bringup.replay import DEFAULT_MEMORY_BYTES, ReplayingWalker
 from biped_bringup.run_settings import RunSettings
-from biped_bringup.walker import Walker
+from biped_bringup.walker import WalkedTicks, Walker
 from biped_common.seeds import robot_stream
 from biped_common.settings import from_mapping, to_mapping
 from biped_common.timing import seconds
@@ -28,18 +29,35 @@ _PACKAGES = ("biped", "numpy", "numba", "pybullet")
 class TrainingRun:
     """Session and robot of one run with one seed, in this process."""
 
-    def __init__(self, settings: RunSettings, seed: int) -> None:
+    def __init__(
+        self,
+        settings: RunSettings,
+        seed: int,
+        replay_bytes: int = DEFAULT_MEMORY_BYTES,
+    ) -> None:
         """Start from nothing.
 
         Args:
             settings: of the whole run.
             seed: of every random draw; learner and disturbances have streams of their
                 own.
+            replay_bytes: memory for the replay of walks, 0 to compute them all. Walks
+                with random disturbances are never replayed.
         """
         self.settings = settings
         self.seed = seed
         self._robot_rng = np.random.default_rng(robot_stream(seed))
-        self.walker = Walker(settings, self._robot_rng)
+        self.replay_off: str | None = None
+        """Why walks are not replayed, in words; None where they are."""
+        if settings.sim.disturbances.random:
+            self.replay_off = "random disturbances make every walk different"
+        elif replay_bytes == 0:
+            self.replay_off = "as asked"
+        self.walker = (
+            ReplayingWalker(settings, self._robot_rng, replay_bytes)
+            if self.replay_off is None
+            else Walker(settings, self._robot_rng)
+        )
         self.session = LearningSession(settings.learner, self.walker.walk_ticks, seed)
         self.cpu_s = 0.0
         self.written_by = _versions()
@@ -124,13 +142,18 @@ class TrainingRun:
             **self.session.header(),
             "robot_rng": self._robot_rng.bit_generator.state,
             "cpu_s": self.cpu_s,
+            "walked_ticks": vars(self.walker.ticks),
             "versions": _versions(),
         }
         write_checkpoint(path, header, self.session.arrays())
 
     @classmethod
-    def load(cls, path: Path) -> TrainingRun:
+    def load(cls, path: Path, replay_bytes: int = DEFAULT_MEMORY_BYTES) -> TrainingRun:
         """Return the run of a checkpoint, ready for its next episode.
+
+        Args:
+            path: what `save` wrote.
+            replay_bytes: memory for the replay of walks, 0 to compute them all.
 
         Raises:
             CheckpointError: the file is no usable checkpoint.
@@ -138,11 +161,14 @@ class TrainingRun:
         header, arrays = read_checkpoint(path)
         run = None
         try:
-            run = cls(from_mapping(RunSettings, header["settings"]), header["seed"])
+            settings = from_mapping(RunSettings, header["settings"])
+            run = cls(settings, header["seed"], replay_bytes)
             run.session.restore(header, arrays)
-            # A learner on ROS does not know the robot's generator.
+            # A learner on ROS does not know the robot's generator, nor what was
+            # computed and how long that took.
             if "robot_rng" in header:
                 run._robot_rng.bit_generator.state = header["robot_rng"]
+            run.walker.ticks = WalkedTicks(**header.get("walked_ticks", {}))
             run.cpu_s = float(header.get("cpu_s", 0.0))
         except (
             AttributeError, KeyError, OverflowError, TypeError, ValueError
@@ -170,6 +196,9 @@ class TrainingRun:
             "evaluations": tally.evaluations,
             "simulated_s": seconds(tally.simulated_ticks),
             "evaluation_s": seconds(tally.evaluation_ticks),
+            "replay_off": self.replay_off,
+            "computed_ticks": self.walker.ticks.computed,
+            "replayed_ticks": self.walker.ticks.replayed,
             "cpu_s": round(self.cpu_s, 3),
             "figures": session.learner.figures(),
             "seed": self.seed,

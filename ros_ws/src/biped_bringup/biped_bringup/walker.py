@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -22,6 +23,21 @@ class Responder(Protocol):
 
     def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
         """Return the correction [m] for the coming learning tick, or the result."""
+
+
+@dataclass
+class WalkedTicks:
+    """Where the control ticks of all walks came from."""
+
+    computed: int = 0
+    """Steps of the physics, those executed again for a replay included."""
+    replayed: int = 0
+    """Known from earlier walks instead."""
+
+    @property
+    def replayed_share(self) -> float:
+        """Share of the replayed ones, 0 before the first tick."""
+        return self.replayed / max(1, self.computed + self.replayed)
 
 
 class Walker:
@@ -45,6 +61,7 @@ class Walker:
         self.biped = SimulatedBiped(
             robot, settings.sim, self.reference.stance(), rng, on_tick
         )
+        self.ticks = WalkedTicks()
         self._walks = 0
 
     @property
@@ -60,6 +77,7 @@ class Walker:
         while not isinstance(answer, EpisodeResult):
             observation = self.biped.execute(self.reference.segment(answer))
             answer = responder.respond(observation)
+        self.ticks.computed += self.biped.control_tick
         return answer
 
     def close(self) -> None:

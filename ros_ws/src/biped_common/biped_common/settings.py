@@ -28,7 +28,7 @@ from msgspec import Meta
 
 from biped_common.errors import BipedError
 
-AnySettings = TypeVar("AnySettings")
+AnySettings = TypeVar("AnySettings", bound="Settings")
 Content = TypeVar("Content")
 _SECTION = "must be a section of keys"
 _NOUNS = {int: "a whole number", bool: "true or false", str: "text"}

@@ -9,12 +9,33 @@ one that cannot be loaded is named with its package and left out.
 
 from __future__ import annotations
 
+import ast
 import sys
 from collections.abc import Callable, Sequence
+from importlib import metadata
+from importlib.metadata import EntryPoint
+from importlib.util import find_spec
 from typing import Any
 
 from biped_common.command_line import CommandError
-from biped_common.entry_points import EntryPoint, entry_points
+
+
+def entry_points(group: str) -> dict[str, EntryPoint]:
+    """Return the entry points of a group by name; as with modules, the first counts."""
+    found: dict[str, EntryPoint] = {}
+    for point in metadata.entry_points(group=group):
+        found.setdefault(point.name, point)
+    return found
+
+
+def docstring_of(point: EntryPoint) -> str:
+    """Return the docstring of an entry point's module, without running the module."""
+    spec = find_spec(point.module)
+    if spec is None:
+        raise ModuleNotFoundError(f"No module named '{point.module}'")
+    loader: Any = spec.loader
+    source = loader.get_source(point.module) or ""
+    return ast.get_docstring(ast.parse(source), clean=False) or ""
 
 
 def add_verbs(parsers: Any, group: str, words: Sequence[str]) -> None:
@@ -66,7 +87,8 @@ def _use(
     except (Exception, SystemExit) as error:
         # In one line, whatever the package has to say.
         text = " ".join(str(error).split())
+        package = "an unknown package" if point.dist is None else point.dist.name
         raise CommandError(
-            f"verb {point.name} of {point.package} cannot be loaded: "
+            f"verb {point.name} of {package} cannot be loaded: "
             f"{type(error).__name__}: {text}"
         ) from error

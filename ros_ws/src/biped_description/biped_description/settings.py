@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from biped_common.settings import SettingsError, check_ranges, setting
+from biped_common.settings import Settings, SettingsError, setting
 from biped_description.joints import JOINTS_PER_LEG, KNEE, LEG_JOINTS
 from biped_description.shapes import Box, Cylinder
 
@@ -31,7 +31,7 @@ def _mass(default: float, doc: str) -> Any:
 
 
 @dataclass(frozen=True)
-class RobotSettings:
+class RobotSettings(Settings):
     """A torso on two mirrored legs of six joints each.
 
     The three hip axes meet in one point, and so do the two ankle axes.
@@ -109,9 +109,8 @@ class RobotSettings:
         above=0.0,
     )
 
-    def __post_init__(self) -> None:
-        """Refuse values out of range or at odds with one another."""
-        check_ranges(self)
+    def check_together(self) -> None:
+        """Refuse values that are at odds with one another."""
         for name in ("position_lower_rad", "position_upper_rad", "torque_limit_nm"):
             values = getattr(self, name)
             if len(values) != JOINTS_PER_LEG:

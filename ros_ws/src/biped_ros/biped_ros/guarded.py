@@ -11,7 +11,7 @@ import importlib
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rcl_interfaces.msg import SetParametersResult
@@ -20,7 +20,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 
-from biped_common.settings import SettingsError
+from biped_common.settings import AnySettings, SettingsError
 from biped_ros.parameters import changed_settings, declared_settings
 from biped_ros.process import process_name
 from biped_ros.qos import qos_profile
@@ -28,7 +28,6 @@ from msgs_json import topics
 from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError, RefusedMessageError
 
-Settings = TypeVar("Settings")
 _DIAGNOSTICS_PERIOD_S = 1.0
 _LOOK_PERIOD_S = 0.05
 # Of all publishers together, since a subscriber may be dead or stopped.
@@ -78,8 +77,10 @@ class GuardedNode(Node):  # type: ignore[misc]
     # -- parameters ----------------------------------------------------------------
 
     def settings_from_parameters(
-        self, cls: type[Settings], changed: Callable[[Settings], None] | None = None
-    ) -> Settings:
+        self,
+        cls: type[AnySettings],
+        changed: Callable[[AnySettings], None] | None = None,
+    ) -> AnySettings:
         """Declare the node's settings as its parameters; return them.
 
         Args:

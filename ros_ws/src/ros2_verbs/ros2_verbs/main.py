@@ -14,13 +14,13 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from importlib.metadata import EntryPoint
 from typing import Any
 
 from biped_common.command_line import INTERRUPTED
-from biped_common.entry_points import EntryPoint
 from biped_common.errors import BipedError
 from biped_common.signals import loading
-from biped_common.verbs import use_verbs
+from biped_common.verbs import docstring_of, use_verbs
 from ros2_verbs import real_ros2
 from ros2_verbs.environment import prepare_environment
 
@@ -102,7 +102,7 @@ def _add_verbs(parsers: Any, group: str, names: Sequence[str]) -> None:
     def add(point: EntryPoint, called: bool) -> None:
         # What was not called for is not run, not even for its help.
         module: Any = point.load() if called else None
-        text = module.__doc__ or "" if called else point.docstring()
+        text = module.__doc__ or "" if called else docstring_of(point)
         text = text.partition("\n")[0].rstrip(".")
         parser = parsers.add_parser(point.name, help=text, description=text)
         parser.set_defaults(parser=parser)

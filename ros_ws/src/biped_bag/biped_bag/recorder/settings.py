@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import check_ranges, setting
+from biped_common.settings import Settings, setting
 
 
 @dataclass(frozen=True)
-class RecorderSettings:
+class RecorderSettings(Settings):
     """What is recorded, and where to."""
 
     folder: str = setting("", "", "of the bag; must not be one yet")
@@ -41,7 +41,3 @@ class RecorderSettings:
     )
     run: str = setting("{}", "", "JSON object of texts, kept in the bag as biped.run")
     attachment: str = setting("", "", "file kept in the bag, the memory begun with")
-
-    def __post_init__(self) -> None:
-        """Refuse values out of range."""
-        check_ranges(self)

@@ -12,8 +12,10 @@ from rich.console import Console
 
 from biped_bringup.cli.figures import figures_text
 from biped_bringup.cli.options import (
+    add_replay_options,
     add_settings_options,
     names_settings,
+    replay_bytes_of,
     settings_of,
 )
 from biped_bringup.cli.progress import TrainingProgress
@@ -83,6 +85,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         metavar="S",
         help="seconds of real time between saves (default 20)",
     )
+    add_replay_options(parser)
     add_settings_options(parser)
     add_json_option(parser)
     parser.set_defaults(run=run)
@@ -138,13 +141,13 @@ def run(options: argparse.Namespace) -> int:
 def _training(options: argparse.Namespace) -> TrainingRun:
     if options.resume is None:
         seed = 0 if options.seed is None else options.seed
-        return TrainingRun(settings_of(options), seed)
+        return TrainingRun(settings_of(options), seed, replay_bytes_of(options))
     if names_settings(options) or options.seed is not None:
         raise CommandError(
             "--resume: goes on with the settings and the seed of the file; "
             "--preset, --config, --set and --seed cannot be given with it"
         )
-    return TrainingRun.load(options.resume)
+    return TrainingRun.load(options.resume, replay_bytes_of(options))
 
 
 def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:
@@ -154,6 +157,12 @@ def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:
         print("learned: a frozen greedy walk completes the whole walk")
     else:
         print("not learned yet")
+    replay = (
+        f"{summary['replayed_ticks']:,} control ticks, "
+        f"{summary['computed_ticks']:,} computed"
+        if summary["replay_off"] is None
+        else f"off: {summary['replay_off']}"
+    )
     print(
         f"episodes             {summary['episodes']}"
         f" (schedule complete after {summary['schedule_episodes'] or '-'},"
@@ -161,6 +170,7 @@ def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:
         f"target time          {summary['target_time_s']:g} s\n"
         f"simulated            {summary['simulated_s']:.1f} s in "
         f"{summary['cpu_s']:.1f} CPU s\n"
+        f"replay               {replay}\n"
         f"learner              {figures_text(summary['figures'])}\n"
         f"memory               {summary['memory_file']}\n"
         f"episode log          {folder / LOG_FILE}"

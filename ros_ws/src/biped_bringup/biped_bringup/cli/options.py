@@ -5,12 +5,16 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from biped_bringup.replay import DEFAULT_MEMORY_BYTES
 from biped_bringup.run_settings import (
     DEFAULT_PRESET,
     PRESETS,
     RunSettings,
     load_settings,
 )
+from biped_common.command_line import natural
+
+_MEGABYTE = 1_000_000
 
 
 def add_settings_options(parser: argparse.ArgumentParser) -> None:
@@ -38,6 +42,31 @@ def add_settings_options(parser: argparse.ArgumentParser) -> None:
         help="change one setting, e.g. learner.schedule.successes_per_subtask=5 or "
         "gait.double_support_s=1.0 [s]; repeatable; `biped check --show` lists all",
     )
+
+
+def add_replay_options(parser: argparse.ArgumentParser) -> None:
+    """Add --no-replay and --replay-mb."""
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument(
+        "--replay-mb",
+        type=natural,
+        default=DEFAULT_MEMORY_BYTES // _MEGABYTE,
+        metavar="N",
+        help="memory for the walks so far, in megabytes (default %(default)s)",
+    )
+    group.add_argument(
+        "--no-replay",
+        dest="replay_mb",
+        action="store_const",
+        const=0,
+        help="compute every walk to its end, also where it was walked before; the "
+        "results are the same to the last bit",
+    )
+
+
+def replay_bytes_of(options: argparse.Namespace) -> int:
+    """Return the memory that the options give to the replay of walks."""
+    return int(options.replay_mb) * _MEGABYTE
 
 
 def settings_of(options: argparse.Namespace) -> RunSettings:

@@ -54,6 +54,11 @@ class TrainingProgress(LiveDisplay):
         run = self._run
         schedule, tally = run.session.task.schedule, run.tally
         ticks = tally.simulated_ticks + tally.evaluation_ticks - self._ticks_before
+        replayed = (
+            f"replayed {100 * run.walker.ticks.replayed_share:.0f} %"
+            if run.replay_off is None
+            else "replay off"
+        )
         rate = seconds(ticks) / max(time.monotonic() - self._since, 1e-9)
         return (
             f"target {seconds(schedule.target_ticks):5.2f} s"
@@ -61,5 +66,5 @@ class TrainingProgress(LiveDisplay):
             f"  successes {schedule.successes}"
             f"  episodes {run.episodes}  survival {100 * run.log.survival():.0f} %"
             f"  {figures_text(run.session.learner.figures())}"
-            f"  {rate:.1f} simulated s/s"
+            f"  {replayed}  {rate:.1f} simulated s/s"
         )

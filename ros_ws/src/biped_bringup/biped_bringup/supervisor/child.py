@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import IO
 
@@ -82,7 +83,7 @@ class Child:
             text=True,
             errors="replace",
             start_new_session=True,
-            preexec_fn=_die_with_parent,
+            preexec_fn=partial(_die_with, os.getpid()),
         )
         assert self._process.stdout is not None
         self._reader = threading.Thread(
@@ -117,9 +118,9 @@ class Child:
                 self._show(self.name, line.rstrip())
 
 
-def _die_with_parent() -> None:
+def _die_with(supervisor: int) -> None:
     """Have the kernel end this process when the supervisor is gone, however it went."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-    # The supervisor may have died before the line above.
-    if os.getppid() == 1:
+    # It may have died before the line above. In a container it may itself be process 1.
+    if os.getppid() != supervisor:
         os._exit(1)

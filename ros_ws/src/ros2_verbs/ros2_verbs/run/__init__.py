@@ -11,8 +11,7 @@ import argparse
 import shlex
 import signal
 import subprocess
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any
 
 from ros2_verbs.errors import VerbError
@@ -66,8 +65,8 @@ def _run(command: Sequence[str]) -> int:
     process: subprocess.Popen[bytes] | None = None
     early: list[int] = []
 
-    def ignore(number: int, _: Any) -> None:
-        """The terminal has sent it to the executable, too."""
+    def leave_it(number: int, _: Any) -> None:
+        """Not SIG_IGN, which would be inherited: the terminal sends it to both."""
 
     def pass_on(number: int, _: Any) -> None:
         if process is None:
@@ -75,25 +74,12 @@ def _run(command: Sequence[str]) -> int:
         else:
             process.send_signal(number)
 
-    with _handlers({signal.SIGINT: ignore, signal.SIGTERM: pass_on}):
-        process = subprocess.Popen(command)
-        for number in early:
-            process.send_signal(number)
-        return process.wait()
-
-
-@contextmanager
-def _handlers(
-    handlers: Mapping[signal.Signals, Callable[[int, Any], None]],
-) -> Iterator[None]:
-    old = {
-        number: signal.signal(number, handler) for number, handler in handlers.items()
-    }
-    try:
-        yield
-    finally:
-        for number, handler in old.items():
-            signal.signal(number, handler)
+    signal.signal(signal.SIGINT, leave_it)
+    signal.signal(signal.SIGTERM, pass_on)
+    process = subprocess.Popen(command)
+    for number in early:
+        process.send_signal(number)
+    return process.wait()
 
 
 def _complete_packages(**_: Any) -> list[str]:
