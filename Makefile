@@ -14,7 +14,7 @@ export UV_NO_CONFIG := 1
 UV := .venv/installer/bin/uv
 
 .DEFAULT_GOAL := help
-.PHONY: help install dev run test lint format bench colcon lock clean
+.PHONY: help install dev run test lint format bench colcon lock version clean
 
 help:  ## list these targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
@@ -57,6 +57,11 @@ lock: $(UV)  ## pin the dependencies of pyproject.toml, with hashes
 		--output-file requirements/dev.lock pyproject.toml
 	$(COMPILE) --output-file requirements/build.lock requirements/build.in
 	$(COMPILE) --output-file requirements/installer.lock requirements/installer.in
+
+# It stands once per ROS package, since colcon reads no pyproject.toml.
+version:  ## give the project and all its packages a version: make version TO=0.3.0
+	sed -i -E 's/^(version: |version = "|    version="|  <version>)[0-9.]+/\1$(or $(TO),$(error say which: TO=0.3.0))/' \
+		CITATION.cff pyproject.toml ros_ws/src/*/setup.py ros_ws/src/*/package.xml
 
 clean:  ## remove .venv, caches and build products (recorded runs stay)
 	rm -rf .venv build dist install log ros_ws/build ros_ws/install ros_ws/log

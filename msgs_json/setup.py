@@ -4,7 +4,7 @@ NAME = "msgs_json"
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="0.2.0",
     packages=find_packages(),
     package_data={NAME: ["schemas/*.json"]},
     data_files=[

@@ -6,18 +6,25 @@ from pathlib import Path
 
 import pytest
 
-TOP = Path(__file__).resolve().parents[1]
-EXAMPLES = {"cartpole.py": "learned after "}
+from biped_bringup.cli.main import main
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+SAID = {
+    "cartpole.py": "\nlearned after ",
+    "own_learner.py": ": completed, 11.25 s\n",
+    "own_task.py": ": stops at the mark, ",
+    "waist_env.py": "walk 3: zmp_error, ",
+}
 
 
-def test_every_example_is_run_here() -> None:
-    assert {file.name for file in (TOP / "examples").glob("*.py")} == set(EXAMPLES)
+def test_every_program_is_run_here() -> None:
+    assert {file.name for file in EXAMPLES.glob("*.py")} == set(SAID)
 
 
-@pytest.mark.parametrize(("name", "said"), EXAMPLES.items())
-def test_an_example_does_what_it_says(name: str, said: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("name", "said"), SAID.items())
+def test_a_program_does_what_it_says(name: str, said: str, tmp_path: Path) -> None:
     done = subprocess.run(
-        [sys.executable, TOP / "examples" / name],
+        [sys.executable, EXAMPLES / name],
         cwd=tmp_path,
         capture_output=True,
         text=True,
@@ -25,4 +32,16 @@ def test_an_example_does_what_it_says(name: str, said: str, tmp_path: Path) -> N
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert said in done.stdout
-    assert "not learned" not in done.stdout
+
+
+@pytest.mark.parametrize("file", [*EXAMPLES.glob("*.yaml")], ids=lambda file: file.name)
+def test_a_robot_walks_as_its_first_lines_say(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(EXAMPLES.parent)
+    (command,) = (
+        line.removeprefix("#   ")
+        for line in file.read_text().splitlines()
+        if line.startswith("#   biped ")
+    )
+    assert main(command.split()[1:]) == 0

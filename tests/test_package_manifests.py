@@ -18,6 +18,7 @@ OWN = {folder.name for folder in FOLDERS}
 
 ROSDEP_KEYS = {
     "argcomplete": "python3-argcomplete",
+    "gymnasium": "python3-gymnasium-pip",
     "matplotlib": "python3-matplotlib",
     "numpy": "python3-numpy",
     "pybullet": "python3-pybullet-pip",

@@ -4,7 +4,7 @@ NAME = "biped_bringup"
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="0.2.0",
     packages=find_packages(),
     package_data={NAME: ["presets/*.yaml"]},
     data_files=[

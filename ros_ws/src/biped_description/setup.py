@@ -4,7 +4,7 @@ NAME = "biped_description"
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="0.2.0",
     packages=find_packages(),
     package_data={NAME: ["*.urdf", "*.yaml", "py.typed"]},
     data_files=[
