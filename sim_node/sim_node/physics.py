@@ -2,7 +2,7 @@
 
 A plant is a floor at z = 0 with one robot, stepped one control tick of 2 ms at a time.
 Several live in one process without feeling each other. Joints are in the order of
-`JOINT_NAMES`, links in that of `LINK_NAMES`. docs/engines.md says how to add one.
+`JOINT_NAMES`, links in that of `LINK_NAMES`. docs/extend.md says how to add one.
 """
 
 from __future__ import annotations

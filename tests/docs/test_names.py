@@ -1,41 +1,62 @@
-"""The map from the paper to code and tests names only what exists."""
+"""What the pages name exists: files, functions, tests, settings, commands, modules."""
 
 import ast
+import importlib.util
+import itertools
 import re
+import shlex
 from pathlib import Path
 
 import pytest
+import tomllib
+from tests.docs.pages import PAGES, TOP, blocks, prose
 
+from biped_bringup.cli.main import parser
 from biped_bringup.run_settings import load_settings
 from biped_common.settings import to_mapping
 
-TOP = Path(__file__).resolve().parents[1]
 MAP = TOP / "docs" / "paper-map.md"
-FOLDERS = {
-    "learner_node": TOP / "learner_node/learner_node",
-    "xol": TOP / "learner_node/learner_node/xol",
-    "walking": TOP / "learner_node/learner_node/walking",
-    "sim": TOP / "sim_node/sim_node",
-    "biped_common": TOP / "ros_ws/src/biped_common/biped_common",
-    "biped_bringup": TOP / "ros_ws/src/biped_bringup/biped_bringup",
-    "biped_description": TOP / "ros_ws/src/biped_description/biped_description",
-    "biped_lab": TOP / "ros_ws/src/biped_lab/biped_lab",
-    "msgs_json": TOP / "msgs_json/msgs_json",
+LIVING = [page for page in PAGES if page.name != "CHANGELOG.md"]
+"""All pages that tell how things are, not how they were."""
+SHORT = {
+    "xol/": "learner_node/xol/",
+    "walking/": "learner_node/walking/",
+    "sim/": "sim_node/",
 }
-NAMED = sorted(set(re.findall(r"`([\w/]+\.py)(?:::([\w.]+))?`", MAP.read_text())))
-SETTINGS = sorted(
-    set(re.findall(r"`((?:gait|sim|learner)\.(?!py)[\w.]+)`", MAP.read_text()))
-)
+"""Folders that the map abbreviates; what is in none of them is the trajectory's."""
 
 
-def located(path: str) -> Path:
-    """Return the file that a short path of the map stands for."""
-    folder, _, rest = path.partition("/")
-    if Path(path).name.startswith("test_"):
-        return TOP / "tests" / path
-    if not rest:
-        return TOP / "trajectory_node/trajectory_node" / path
-    return FOLDERS[folder] / rest
+def found_in(pages: list[Path], pattern: str) -> list[tuple[Path, str]]:
+    """Return what the pages say, outside of fenced blocks, that fits a pattern."""
+    return sorted(
+        {(page, text) for page in pages for text in re.findall(pattern, prose(page))}
+    )
+
+
+def each(cases: list[tuple[Path, str]]) -> pytest.MarkDecorator:
+    """Return a test's parameters: pages, and what they say."""
+    names = [f"{page.relative_to(TOP)}: {text}" for page, text in cases]
+    return pytest.mark.parametrize(("page", "said"), cases, ids=names)
+
+
+# -- files and what is in them ---------------------------------------------------------
+
+
+def located(page: Path, path: str) -> Path:
+    """Return the file that a path of a page stands for.
+
+    Paths are from the top, from `tests/`, or begin with a package: `sim_node/biped.py`
+    is `sim_node/sim_node/biped.py`.
+    """
+    if page == MAP and "test_" not in path:
+        for short, folder in SHORT.items():
+            path = re.sub(f"^{short}", folder, path)
+        path = path if "/" in path else f"trajectory_node/{path}"
+    package = path.partition("/")[0]
+    for folder in (TOP / "ros_ws/src" / package, TOP, TOP / "tests"):
+        if (folder / path).is_file():
+            return folder / path
+    raise AssertionError(f"{path}: no such file")
 
 
 def names_in(tree: ast.AST) -> set[str]:
@@ -53,18 +74,88 @@ def names_in(tree: ast.AST) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize(("path", "name"), NAMED)
-def test_what_the_map_names_exists(path: str, name: str) -> None:
-    names = names_in(ast.parse(located(path).read_text()))
-    assert not name or name in names
+@each(
+    found_in(
+        LIVING, r"`((?:[\w/]+/|test_)\w+\.(?:py|yaml)(?:::[\w.]+)?|\w+\.py::[\w.]+)`"
+    )
+)
+def test_a_file_and_what_is_named_of_it_exist(page: Path, said: str) -> None:
+    path, _, name = said.partition("::")
+    file = located(page, path)
+    assert not name or name in names_in(ast.parse(file.read_text()))
 
 
-@pytest.mark.parametrize("key", SETTINGS)
-def test_every_setting_that_the_map_names_exists(key: str) -> None:
+# -- settings --------------------------------------------------------------------------
+
+
+@each(
+    found_in(
+        LIVING, r"`((?:robot|gait|correction|sim|learner)\.(?!py|yaml)[\w.*]+)[`=]"
+    )
+)
+def test_a_setting_exists(page: Path, said: str) -> None:
     value = to_mapping(load_settings())
-    for part in key.split("."):
+    for part in said.removesuffix(".*").split("."):
         assert part in value
         value = value[part]
+
+
+# -- commands --------------------------------------------------------------------------
+
+
+def commands(page: Path) -> list[str]:
+    """Return what a page tells to type, one command each."""
+    lines = found_in([page], r"`([^`\n]+)`")
+    told = [text for _, text in lines]
+    for block in blocks(page.read_text()):
+        if block.language == "sh":
+            told += re.sub(r"\\\n", " ", block.text).splitlines()
+    parts = (re.split(r"\|\||&&|[|;&>]| #", line) for line in told if "$(" not in line)
+    return [part.strip() for line in parts for part in line]
+
+
+def called(name: str) -> list[tuple[Path, str]]:
+    """Return the commands of all pages that call a program with arguments."""
+    return [
+        (page, command)
+        for page in LIVING
+        for command in dict.fromkeys(commands(page))
+        if command.startswith(f"{name} ")
+    ]
+
+
+@each([(page, said) for page, said in called("biped") if page.name != "extend.md"])
+def test_biped_understands_the_command(page: Path, said: str) -> None:
+    words = shlex.split(said)[1:]
+    if any(word.startswith("-") for word in words):
+        options = parser(words).parse_args(words)
+        load_settings(changes=getattr(options, "changes", ()))
+    else:  # often a verb is named, without what it would need
+        with pytest.raises(SystemExit, match=r"^0$"):
+            parser(words).parse_args([*words, "--help"])
+
+
+@each(called("make"))
+def test_make_has_the_target(page: Path, said: str) -> None:
+    targets = re.findall(r"^([a-z]+):", (TOP / "Makefile").read_text(), re.M)
+    assert said.split()[1] in targets
+
+
+@each(
+    [
+        (page, module)
+        for page in LIVING
+        for module in sorted({*re.findall(r"python -m ([\w.]+)", page.read_text())})
+    ]
+)
+def test_a_module_that_is_run_exists(
+    page: Path, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(TOP))
+    assert importlib.util.find_spec(said) is not None
+
+
+# -- two pages as wholes ---------------------------------------------------------------
 
 
 def test_every_step_of_the_algorithm_is_on_the_map() -> None:
@@ -72,3 +163,21 @@ def test_every_step_of_the_algorithm_is_on_the_map() -> None:
     steps = [f"2(c){step}:" for step in ("i", "ii", "iii", "iv", "v", "vi", "vii")]
     for step in ["1:", "2:", "2(a):", "2(b):", *steps, "2(c)viii:", "2(c)ix:"]:
         assert f"| {step}" in text
+
+
+def test_the_picture_of_the_rooms_is_the_contract() -> None:
+    (picture,) = (
+        block.text
+        for block in blocks((TOP / "docs" / "design.md").read_text())
+        if block.language == "mermaid"
+    )
+    drawn = [
+        tuple({*floor.split(" & ")} for floor in line.strip().split(" --> "))
+        for line in picture.splitlines()
+        if " --> " in line
+    ]
+    project = tomllib.loads((TOP / "pyproject.toml").read_text())
+    contracts = project["tool"]["importlinter"]["contracts"]
+    (layers,) = (each["layers"] for each in contracts if each["id"] == "floors")
+    floors = [{*layer.split(" | ")} for layer in layers]
+    assert drawn == [*itertools.pairwise(floors)]
