@@ -85,6 +85,9 @@ $(BIN)/python:
 # that are not in the lock, and removes them.
 
 $(UV): requirements/installer.lock | $(BIN)/python
+	@$(BIN)/python -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' || \
+		{ echo 'biped: .venv is not of Python 3.11; `make clean` removes it' >&2; \
+		exit 1; }
 	@$(BIN)/python -m pip install -qq --no-deps --require-hashes --only-binary :all: \
 		--upgrade --target .venv/installer -r $<
 	@touch $@

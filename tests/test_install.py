@@ -64,13 +64,18 @@ class Checkout:
             Path(__file__).with_name("toy_backend.py"), self.folder / "backend.py"
         )
 
-    def make(self, target: str, **environment: str) -> subprocess.CompletedProcess[str]:
-        """Run make; uv itself is the checkout's own, and not fetched again."""
+    def make(
+        self,
+        target: str,
+        uv: str = f"UV={TOP}/.venv/installer/bin/uv",
+        **environment: str,
+    ) -> subprocess.CompletedProcess[str]:
+        """Run make; uv itself is the project's own, and not fetched again."""
         settings = os.environ | {"UV_DEFAULT_INDEX": self.index.as_uri()} | environment
         for name in ("MAKEFLAGS", "MAKELEVEL", "VIRTUAL_ENV"):
             settings.pop(name, None)
         return subprocess.run(
-            ["make", "-s", target, f"UV={TOP}/.venv/installer/bin/uv"],
+            ["make", "-s", target, uv],
             cwd=self.folder,
             env=settings,
             capture_output=True,
@@ -168,6 +173,20 @@ def test_an_environment_of_another_python_is_not_begun(
     assert "no Python 3.11 found" in done.stderr
     assert "README.md" in done.stderr
     assert not (checkout.folder / ".venv").exists()
+
+
+def test_an_environment_of_another_python_is_not_gone_on_with(
+    checkout: Checkout,
+) -> None:
+    # Without wheels for it, an hour of compiling would begin.
+    python = checkout.folder / ".venv" / "bin" / "python"
+    python.parent.mkdir(parents=True)
+    python.write_text("#!/bin/sh\nexit 1\n")
+    python.chmod(0o755)
+    uv = f"UV={checkout.folder}/.venv/installer/bin/uv"
+    done = checkout.make("install", uv)
+    assert done.returncode != 0
+    assert ".venv is not of Python 3.11" in done.stderr
 
 
 def test_this_environment_holds_what_is_locked() -> None:

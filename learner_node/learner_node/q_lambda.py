@@ -27,13 +27,13 @@ from learner_node.states import NO_STATE, BasisStates, StateSettings, doubled
 class QLambdaSettings(Settings):
     """Constants of Q(lambda)."""
 
-    learning_rate: float = setting(0.1, "", "alpha", above=0.0, upper=1.0)
+    learning_rate: float = setting(0.2, "", "alpha", above=0.0, upper=1.0)
     discount: float = setting(0.98, "per decision", "gamma", above=0.0, upper=1.0)
     trace_decay: float = setting(
         0.95, "per decision", "lambda, beside gamma", lower=0.0, upper=1.0
     )
     exploration: float = setting(
-        0.05,
+        0.01,
         "",
         "epsilon: share of choices, per component, that are left to chance",
         lower=0.0,

@@ -27,10 +27,10 @@ from sim_node.control_tick import ControlTick, phase_flags
 from sim_node.disturbance import Disturbance, draw_disturbance
 from sim_node.engines import plant_of
 from sim_node.errors import SnapshotError, WorldClosedError
-from sim_node.joint_references import JointReferences, PlannedPhase, solve, standing
+from sim_node.joint_references import JointReferences, solve, standing
 from sim_node.limit_watch import LimitCounts, LimitWatch
 from sim_node.settings import SimSettings
-from sim_node.tick_sums import sum_up
+from sim_node.tick_sums import packed_row, sum_up
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
@@ -119,8 +119,8 @@ class SimulatedBiped:
         )
         self._references = standing(start)
         self._snapshots: set[BipedSnapshot] = set()
-        # Measured since the last observation.
-        self._ticks: list[ControlTick] = []
+        self._rows: list[bytes] = []
+        """Control ticks since the last observation, as `packed_row` packs them."""
         self._disturbance = draw_disturbance(
             replace(settings.disturbances, push_force_n=0.0, mass_error=0.0),
             len(LINK_NAMES),
@@ -146,7 +146,7 @@ class SimulatedBiped:
             )
         if disturbances.mass_error > 0.0:
             self.world.set_mass_factors(self._disturbance.mass_factors)
-        contact = self.world.contact(held=(0.0, 0.0))
+        contact = self.world.contact(NO_CONTACT)
         _, velocity = self.world.waist()
         self._watch = _Watch(
             episode=episode,
@@ -155,7 +155,7 @@ class SimulatedBiped:
             waist_velocity=velocity[:2],
         )
         self._references = standing(self._start)
-        self._ticks.clear()
+        self._rows.clear()
         return self.observe()
 
     def execute(self, segment: WaistSegment) -> Observation:
@@ -171,10 +171,7 @@ class SimulatedBiped:
                 f"the robot is at tick {self._watch.control_tick}"
             )
         self.follow(segment, rows=segment.n_ticks + 1)
-        end = segment.first_tick + segment.n_ticks
-        watch = self._watch
-        while watch.control_tick < end and watch.end_cause is None:
-            self._advance()
+        self._walk(segment.first_tick + segment.n_ticks)
         return self.observe()
 
     def follow(self, segment: WaistSegment, rows: int | None = None) -> None:
@@ -208,7 +205,7 @@ class SimulatedBiped:
             return
         self._references = references
 
-    def advance(self) -> ControlTick:
+    def advance(self) -> None:
         """Walk one control tick along the references.
 
         Raises:
@@ -217,27 +214,55 @@ class SimulatedBiped:
         self._check_walking()
         if self.ticks_ahead < 1:
             raise ValueError(f"no reference for tick {self._watch.control_tick + 1}")
-        return self._advance()
+        self._walk(self._watch.control_tick + 1)
 
-    def _advance(self) -> ControlTick:
-        push, at = self._disturbance, self._watch.control_tick
-        if push.push_from_tick <= at < push.push_to_tick:
-            self.world.push(push.push_force_n)
-        references = self._references
-        row = at - references.segment.first_tick
-        dq_reference = references.dq[row]
-        self.world.command(references.q[row], dq_reference)
-        self.world.step()
-        tick = self._read(
-            references.q[row + 1],
-            dq_reference,
-            references.zmp[row + 1],
-            references.phase[row + 1],
-        )
-        self._ticks.append(tick)
-        if self.on_tick is not None:
-            self.on_tick(tick)
-        return tick
+    def _walk(self, to_tick: int) -> None:
+        """Walk to a control tick, or to the one that ends the walk."""
+        # Once per 2 ms of every walk: what does not change is looked up before.
+        world, watch, references = self.world, self._watch, self._references
+        push, check, on_tick = self._disturbance, self._limit_watch.check, self.on_tick
+        row = self._row()
+        while watch.control_tick < to_tick and watch.end_cause is None:
+            if push.push_from_tick <= watch.control_tick < push.push_to_tick:
+                world.push(push.push_force_n)
+            dq_reference = references.dq[row]
+            world.command(references.q[row], dq_reference)
+            world.step()
+            row += 1
+            watch.clock_ticks += 1
+            watch.control_tick += 1
+            q_reference, zmp_reference = references.q[row], references.zmp[row]
+            position, velocity, torque = world.joints()
+            watch.contact = contact = world.contact(watch.contact)
+            zmp_x_m, zmp_y_m = contact.zmp_x_m, contact.zmp_y_m
+            zmp_error_m = math.hypot(
+                zmp_x_m - zmp_reference[0], zmp_y_m - zmp_reference[1]
+            )
+            watch.end_cause = check(
+                watch.limits, position, velocity, torque, contact, zmp_error_m
+            )
+            self._rows.append(
+                packed_row(
+                    *position, *velocity, *torque, *q_reference, *dq_reference,
+                    zmp_x_m, zmp_y_m, zmp_error_m,
+                )
+            )  # fmt: skip
+            if on_tick is not None:
+                on_tick(
+                    ControlTick(
+                        watch.clock_ticks,
+                        watch.control_tick,
+                        q_reference,
+                        dq_reference,
+                        position,
+                        velocity,
+                        torque,
+                        contact,
+                        zmp_reference,
+                        zmp_error_m,
+                        references.phase(row),
+                    )
+                )
 
     def observe(self) -> Observation:
         """Sum up the control ticks since the last observation, as seen from the last.
@@ -246,13 +271,13 @@ class SimulatedBiped:
         cause `physics_nan`.
         """
         watch, references, row = self._watch, self._references, self._row()
-        segment, planned = references.segment, references.phase[row]
+        segment, planned = references.segment, references.phase(row)
         waist, velocity = self.world.waist()
         if not math.isfinite(sum(waist)):
             watch.end_cause = EndCause.PHYSICS_NAN
         foot = segment.right_foot if planned[0] else segment.left_foot
         # Over the time since the last observation; the walk's last one is shorter.
-        period_s = seconds(max(1, len(self._ticks)))
+        period_s = seconds(max(1, len(self._rows)))
         noise = _NO_NOISE
         if self.settings.disturbances.random:
             # Drawn also where its size is zero, so that a size changes no other draw.
@@ -261,8 +286,8 @@ class SimulatedBiped:
         zmp_error = _measured(watch.contact, references.zmp[row], noise[1])
         acceleration = _measured(velocity, watch.waist_velocity, noise[2], period_s)
         watch.waist_velocity = velocity[:2]
-        sums = sum_up(self._ticks, watch.trajectory)
-        self._ticks.clear()
+        sums = sum_up(self._rows, watch.control_tick, watch.trajectory)
+        self._rows.clear()
         return Observation(
             simulation=self._name,
             episode=watch.episode,
@@ -343,7 +368,7 @@ class SimulatedBiped:
             self.world.set_mass_factors(snapshot.disturbance.mass_factors)
         self._rng.bit_generator.state = snapshot.rng_state
         self._references = snapshot.references
-        self._ticks.clear()
+        self._rows.clear()
 
     def release(self, snapshot: BipedSnapshot) -> None:
         """Free a snapshot that is no longer needed.
@@ -387,40 +412,6 @@ class SimulatedBiped:
         for _ in range(_SETTLING_TICKS):
             self.world.command(q.tolist(), still)
             self.world.step()
-
-    def _read(
-        self,
-        joint_reference: list[float],
-        joint_velocity_reference: list[float],
-        zmp_reference: list[float],
-        planned_phase: PlannedPhase,
-    ) -> ControlTick:
-        """Read the sensors after a control tick and watch the limits."""
-        watch = self._watch
-        watch.clock_ticks += 1
-        watch.control_tick += 1
-        position, velocity, torque = self.world.joints()
-        contact = self.world.contact(watch.contact[:2])
-        watch.contact = contact
-        zmp_error_m = math.hypot(
-            contact.zmp_x_m - zmp_reference[0], contact.zmp_y_m - zmp_reference[1]
-        )
-        watch.end_cause = self._limit_watch.check(
-            watch.limits, position, velocity, torque, contact, zmp_error_m
-        )
-        return ControlTick(
-            watch.clock_ticks,
-            watch.control_tick,
-            joint_reference,
-            joint_velocity_reference,
-            position,
-            velocity,
-            torque,
-            contact,
-            zmp_reference,
-            zmp_error_m,
-            planned_phase,
-        )
 
     def _row(self) -> int:
         """Return the row of the references at which the robot is."""

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-
-import numpy as np
+from typing import NamedTuple
 
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_description import kernels
-from biped_description.joints import JOINT_NAMES
 from biped_description.robot import Robot
 from msgs_json.segment import WaistSegment
 
@@ -17,8 +14,7 @@ PlannedPhase = tuple[bool, bool, int]
 """The gait's phase at one control tick: right support, double support, step index."""
 
 
-@dataclass(frozen=True)
-class JointReferences:
+class JointReferences(NamedTuple):
     """A segment with the joint motion that follows it, as plain numbers by row."""
 
     segment: WaistSegment
@@ -30,14 +26,21 @@ class JointReferences:
     """(rows - 1, 12) from each row to the next [rad/s]"""
     zmp: list[list[float]]
     """(rows, 2) [m]"""
-    phase: list[PlannedPhase]
-    """(rows,)"""
+
+    def phase(self, row: int) -> PlannedPhase:
+        """Return the gait's phase at a row."""
+        segment = self.segment
+        return (
+            bool(segment.right_support[row]),
+            bool(segment.double_support[row]),
+            int(segment.step_index[row]),
+        )
 
 
 def standing(start: WaistSegment) -> JointReferences:
     """Return references that hold a stance and lead nowhere."""
     zmp = start.zmp_reference[:1].tolist()
-    return JointReferences(start, rows=1, q=[], dq=[], zmp=zmp, phase=_phases(start, 1))
+    return JointReferences(start, rows=1, q=[], dq=[], zmp=zmp)
 
 
 def solve(
@@ -51,38 +54,28 @@ def solve(
         rows: how many of its rows to use.
 
     Returns:
-        The references, and the status of `Robot.solve_legs`.
+        The references, and the status of `Robot.leg_motion`.
 
     Raises:
         ValueError: a number of the segment is not finite.
     """
-    q = np.empty((rows, len(JOINT_NAMES)))
-    status, row, _ = robot.solve_legs(
-        segment.waist[:rows], segment.left_foot[:rows], segment.right_foot[:rows], q
+    motion = robot.leg_motion(
+        segment.waist[:rows],
+        segment.left_foot[:rows],
+        segment.right_foot[:rows],
+        CONTROL_PERIOD_S,
     )
-    zmp = segment.zmp_reference[:rows]
-    if status == kernels.NOT_FINITE:
-        raise ValueError(f"segment has a pose that is not finite, row {row}")
+    zmp = segment.zmp_reference[:rows].tolist()
+    if motion.status == kernels.NOT_FINITE:
+        raise ValueError(f"segment has a pose that is not finite, row {motion.row}")
     # A sum is finite only if all of its terms are.
-    if not math.isfinite(zmp.sum()):
+    if not math.isfinite(sum(map(sum, zmp))):
         raise ValueError("segment has a ZMP reference that is not finite")
     references = JointReferences(
         segment,
-        rows=rows if status == kernels.SOLVED else row,
-        q=q.tolist(),
-        dq=((q[1:] - q[:-1]) / CONTROL_PERIOD_S).tolist(),
-        zmp=zmp.tolist(),
-        phase=_phases(segment, rows),
+        rows=rows if motion.status == kernels.SOLVED else motion.row,
+        q=motion.q.tolist(),
+        dq=motion.dq.tolist(),
+        zmp=zmp,
     )
-    return references, status
-
-
-def _phases(segment: WaistSegment, rows: int) -> list[PlannedPhase]:
-    return list(
-        zip(
-            segment.right_support[:rows].tolist(),
-            segment.double_support[:rows].tolist(),
-            segment.step_index[:rows].tolist(),
-            strict=True,
-        )
-    )
+    return references, motion.status

@@ -22,7 +22,7 @@ from biped_description.robot import Robot
 from biped_description.settings import RobotSettings
 from sim_node.contact import NO_CONTACT, FloorContact
 from sim_node.errors import SnapshotError
-from sim_node.physics import JointStates, Physics, Point, Vector, WaistState
+from sim_node.physics import Numbers, Physics, Vector, WaistState
 
 Array = NDArray[np.float64]
 
@@ -136,19 +136,17 @@ class KinematicWorld(Physics):
 
     # -- readings ------------------------------------------------------------------
 
-    def joints(self) -> JointStates:
-        """Return what the joints measure."""
+    def joints(self) -> tuple[Numbers, Numbers, Numbers]:
+        """Return positions, velocities and torques of the joints."""
         state = self._state
-        return JointStates(
-            tuple(state.q.tolist()), tuple(state.dq.tolist()), _NO_TORQUE
-        )
+        return tuple(state.q.tolist()), tuple(state.dq.tolist()), _NO_TORQUE
 
-    def contact(self, held: Point) -> FloorContact:
+    def contact(self, before: FloorContact) -> FloorContact:
         """Return what the floor felt in the last step."""
         contact = self._state.contact
         if contact.left_load_n + contact.right_load_n > 0.0:
             return contact
-        return contact._replace(zmp_x_m=held[0], zmp_y_m=held[1])
+        return contact._replace(zmp_x_m=before.zmp_x_m, zmp_y_m=before.zmp_y_m)
 
     def waist(self) -> WaistState:
         """Return where the waist is and how it moves."""

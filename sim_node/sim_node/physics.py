@@ -15,19 +15,8 @@ from numpy.typing import NDArray
 from biped_description.robot import Robot
 from sim_node.contact import FloorContact
 
-Point: TypeAlias = tuple[float, float]
 Vector: TypeAlias = tuple[float, float, float]
-
-
-class JointStates(NamedTuple):
-    """What the joints measure."""
-
-    position: tuple[float, ...]
-    """(12,) [rad]"""
-    velocity: tuple[float, ...]
-    """(12,) [rad/s]"""
-    torque: tuple[float, ...]
-    """(12,) of the servos [N m]"""
+Numbers: TypeAlias = tuple[float, ...]
 
 
 class WaistState(NamedTuple):
@@ -77,14 +66,19 @@ class Physics(Protocol):
 
     # -- readings, after a step ----------------------------------------------------
 
-    def joints(self) -> JointStates:
-        """Return what the joints measure."""
+    def joints(self) -> tuple[Numbers, Numbers, Numbers]:
+        """Return what the joints measure, (12,) each.
 
-    def contact(self, held: Point) -> FloorContact:
+        Returns:
+            Positions [rad], velocities [rad/s] and torques of the servos [N m].
+        """
+
+    def contact(self, before: FloorContact) -> FloorContact:
         """Return what the floor felt in the last step.
 
-        With no load on either foot there is no ZMP: loads are zero, and the ZMP is the
-        one `held` from the tick before.
+        Args:
+            before: what it felt a tick ago. With no load on either foot there is no
+                ZMP; loads are zero then, and that of `before` is held.
         """
 
     def waist(self) -> WaistState:

@@ -20,7 +20,7 @@ from biped_description.multilink_zmp import GRAVITY_M_S2
 from biped_description.robot import Robot
 from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
-from sim_node.physics import JointStates, Physics, Point, Vector, WaistState
+from sim_node.physics import Numbers, Physics, Vector, WaistState
 from sim_node.quiet import engine_chatter_dropped
 
 with engine_chatter_dropped():
@@ -159,18 +159,18 @@ class PyBulletWorld(Physics):
 
     # -- readings ------------------------------------------------------------------
 
-    def joints(self) -> JointStates:
-        """Return what the joints measure."""
+    def joints(self) -> tuple[Numbers, Numbers, Numbers]:
+        """Return positions, velocities and torques of the joints."""
         states = pybullet.getJointStates(self.robot, self.joint_numbers, self.client)
         position, velocity, _, torque = zip(*states)  # noqa: B905
-        return JointStates(position, velocity, torque)
+        return position, velocity, torque
 
-    def contact(self, held: Point) -> FloorContact:
+    def contact(self, before: FloorContact) -> FloorContact:
         """Return what the floor felt in the last step."""
         points = pybullet.getContactPoints(
             self.robot, self.floor, _ANY_LINK, _ANY_LINK, self.client
         )
-        return floor_contact(points, self.left_sole, held)
+        return floor_contact(points, self.left_sole, before)
 
     def waist(self) -> WaistState:
         """Return where the waist is and how it moves."""
@@ -280,13 +280,13 @@ class PyBulletWorld(Physics):
         pybullet.changeDynamics(body, link, physicsClientId=self.client, **values)
 
 
-def floor_contact(points: Any, left_sole: int, held: Point) -> FloorContact:
+def floor_contact(points: Any, left_sole: int, before: FloorContact) -> FloorContact:
     """Sum up contact points: ZMP = sum(f p) / sum(f) over pressing points.
 
     Args:
         points: PyBullet contact points with the robot as body A.
         left_sole: link index of the left foot; the other contacts are the right's.
-        held: ZMP of the tick before, given again where no foot presses.
+        before: its ZMP is given again where no foot presses.
     """
     left = right = moment_x = moment_y = 0.0
     nearest = 0.0
@@ -305,4 +305,4 @@ def floor_contact(points: Any, left_sole: int, held: Point) -> FloorContact:
     load = left + right
     if load > 0.0:
         return FloorContact(moment_x / load, moment_y / load, left, right, -nearest)
-    return FloorContact(held[0], held[1], 0.0, 0.0, -nearest)
+    return FloorContact(before.zmp_x_m, before.zmp_y_m, 0.0, 0.0, -nearest)

@@ -11,13 +11,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_S
-from sim_node.control_tick import ControlTick
 
 _N_JOINTS = 12
-# Columns of a row: what was measured, what was asked for, and the ZMP with its error.
+# Columns of a row: positions, velocities and torques of the joints, their references,
+# the measured ZMP (2) and the norm of its error.
 _DQ, _TORQUE, _Q_REFERENCE, _DQ_REFERENCE = 12, 24, 36, 48
 _ZMP_ERROR, _COLUMNS = 62, 63
-_ROW = struct.Struct(f"{_COLUMNS}d")
+packed_row = struct.Struct(f"{_COLUMNS}d").pack
+"""Packs the numbers of one control tick; beats every way of numpy for so few."""
 
 
 class TickSums(NamedTuple):
@@ -32,33 +33,21 @@ class TickSums(NamedTuple):
     mean_joint_velocity_error_rad_s: float = 0.0
 
 
-def sum_up(ticks: list[ControlTick], trajectory: Any) -> TickSums:
+def sum_up(rows: list[bytes], last_tick: int, trajectory: Any) -> TickSums:
     """Sum up consecutive control ticks; none at all, or a NaN among them, gives zeros.
 
     Args:
-        ticks: n measured control ticks of one walk, in order.
+        rows: control ticks of one walk, in order, as `packed_row` packs them.
+        last_tick: number of the last of them in its walk.
         trajectory: hash (hashlib) that takes in all that was measured or asked for.
     """
-    if not ticks:
+    if not rows:
         return TickSums()
-    rows = b"".join(map(_row, ticks))
-    trajectory.update(rows)
-    sums = TickSums._make(_sums(np.frombuffer(rows), ticks[0].control_tick))
+    packed = b"".join(rows)
+    trajectory.update(packed)
+    first_tick = last_tick - len(rows) + 1
+    sums = TickSums._make(_sums(np.frombuffer(packed), first_tick))
     return sums if math.isfinite(sum(sums)) else TickSums()
-
-
-def _row(tick: ControlTick) -> bytes:
-    """Return the numbers of a tick; packing beats every way of numpy for so few."""
-    return _ROW.pack(
-        *tick.joint_position,
-        *tick.joint_velocity,
-        *tick.joint_torque,
-        *tick.joint_reference,
-        *tick.joint_velocity_reference,
-        tick.contact.zmp_x_m,
-        tick.contact.zmp_y_m,
-        tick.zmp_error_m,
-    )
 
 
 @njit("UniTuple(float64, 7)(Array(float64, 1, 'C', readonly=True), int64)", cache=True)

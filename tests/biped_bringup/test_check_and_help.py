@@ -13,7 +13,11 @@ from biped_description.settings import RobotSettings
 
 # Options that take a number with a unit, and how their help names it.
 UNITS = {
-    "learn": {"--checkpoint-every": "seconds", "--episodes": "episodes"},
+    "learn": {
+        "--checkpoint-every": "seconds",
+        "--episodes": "episodes",
+        "--replay-mb": "MB",
+    },
     "walk": {"--tds": "[s]"},
     "up": {"--episodes": "episodes", "--publish-every": "control ticks"},
     "check": {},

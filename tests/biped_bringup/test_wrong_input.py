@@ -38,7 +38,7 @@ REFUSED = {
     "walk --memory .": r"\.: not a biped checkpoint.*directory",
     "walk --memory out/memory.npz --preset paper": r"--preset: .* its own settings",
     "walk --memory out/memory.npz --set learner.action.limit_m=0.01": (
-        r"only gait, correction and sim can be changed; .* belong to the memory"
+        r"only robot, gait, correction and sim can be changed; .* belong to the memory"
     ),
     "walk --memory out/memory.npz --set gait.shoes=2": r"gait\.shoes = 2: unknown key",
     "walk --memory out/memory.npz --set gait.step_length_m=0.45": (

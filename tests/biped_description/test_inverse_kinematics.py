@@ -23,6 +23,7 @@ from biped_description.kernels import (
 )
 from biped_description.robot import Robot
 
+DT = 0.002  # control tick [s]
 HEIGHT_M = 0.475  # of the shipped robot's waist in its walking posture
 MARGIN = 1e-6  # keeps drawn poses off the edge of the reachable set [rad]
 untimed = settings(deadline=None)  # the first example may have to compile
@@ -181,15 +182,27 @@ def test_a_single_position_is_refused_with_its_shape():
         SHIPPED.leg_joint_positions(waist[0], left, right)
 
 
-def test_solve_legs_fills_what_leg_joint_positions_returns():
-    pose = standing(11)
-    out = np.empty((11, 12))
-    SHIPPED.solve_legs(*pose, out)
-    np.testing.assert_array_equal(out, SHIPPED.leg_joint_positions(*pose))
+def moving(ticks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Waist, left and right foot (ticks, 3) of a robot that leans forward."""
+    waist, left, right = standing(ticks)
+    waist[:, 0] += np.linspace(0.0, 0.05, ticks) ** 2
+    return waist, left, right
 
 
-def test_solve_legs_says_when_all_went_well():
-    assert SHIPPED.solve_legs(*standing(11), np.empty((11, 12))) == (SOLVED, -1, -1)
+def test_a_motion_has_the_positions_that_reach_its_poses():
+    pose = moving(11)
+    motion = SHIPPED.leg_motion(*pose, DT)
+    np.testing.assert_array_equal(motion.q, SHIPPED.leg_joint_positions(*pose))
+
+
+def test_a_motion_has_the_velocities_that_lead_from_row_to_row():
+    motion = SHIPPED.leg_motion(*moving(11), DT)
+    np.testing.assert_array_equal(motion.dq, np.diff(motion.q, axis=0) / DT)
+
+
+def test_a_motion_says_when_all_went_well():
+    motion = SHIPPED.leg_motion(*moving(11), DT)
+    assert (motion.status, motion.row, motion.joint) == (SOLVED, -1, -1)
 
 
 @pytest.mark.parametrize(
@@ -200,24 +213,27 @@ def test_solve_legs_says_when_all_went_well():
         ((np.nan, 0.0, 0.0), NOT_FINITE, "right_knee"),
     ],
 )
-def test_solve_legs_reports_the_first_tick_that_fails(foot_offset, status, joint):
+def test_a_motion_reports_the_first_tick_that_fails(foot_offset, status, joint):
     waist, left, right = standing(11)
     right[[6, 9]] += foot_offset
-    report = SHIPPED.solve_legs(waist, left, right, np.empty((11, 12)))
-    assert report == (status, 6, JOINT_NAMES.index(joint))
+    motion = SHIPPED.leg_motion(waist, left, right, DT)
+    expected = status, 6, JOINT_NAMES.index(joint)
+    assert (motion.status, motion.row, motion.joint) == expected
 
 
-def test_solve_legs_leaves_the_rows_after_a_failure_alone():
-    waist, left, right = standing(11)
+def test_a_motion_is_right_as_far_as_the_legs_can_follow():
+    waist, left, right = moving(11)
+    whole = SHIPPED.leg_motion(waist, left, right, DT)
     left[6, 2] = -0.2
-    out = np.full((11, 12), 7.0)
-    SHIPPED.solve_legs(waist, left, right, out)
-    np.testing.assert_array_equal(out[7:], 7.0)
+    motion = SHIPPED.leg_motion(waist, left, right, DT)
+    np.testing.assert_array_equal(motion.q[:6], whole.q[:6])
+    np.testing.assert_array_equal(motion.dq[:5], whole.dq[:5])
 
 
-def test_solve_legs_refuses_an_output_of_the_wrong_shape():
-    with pytest.raises(InvalidInputError, match=r"\(11, 6\)"):
-        SHIPPED.solve_legs(*standing(11), np.empty((11, 6)))
+def test_a_motion_of_arrays_of_unequal_length_is_refused():
+    waist, left, right = standing(11)
+    with pytest.raises(InvalidInputError, match=r"\(11, 3\), \(11, 3\) and \(6, 3\)"):
+        SHIPPED.leg_motion(waist, left, right[:6], DT)
 
 
 def test_a_distance_beyond_all_numbers_is_refused():

@@ -8,7 +8,7 @@ from sim_node.contact import FloorContact
 from sim_node.pybullet_world import floor_contact
 
 LEFT, RIGHT = 5, 11
-HELD = (7.0, 8.0)
+HELD = FloorContact(7.0, 8.0, 100.0, 100.0, 0.001)
 
 
 def point(link, x, y, force, distance=0.0):

@@ -10,6 +10,7 @@ from biped_common.settings import SettingsError
 from biped_description.robot import Robot
 from biped_description.settings import RobotSettings
 from msgs_json.end_cause import EndCause
+from sim_node.contact import FloorContact
 from sim_node.disturbance import draw_disturbance
 from sim_node.errors import SnapshotError
 from sim_node.kinematic_world import KinematicWorld
@@ -156,8 +157,8 @@ def test_a_robot_that_falls_faster_than_gravity_has_no_contact():
     folding[[2, 3, 4]] = folding[[8, 9, 10]] = -1.0, 2.0, -1.0
     world.command(q.tolist(), folding.tolist())
     world.step()
-    contact = world.contact(held=(7.0, 8.0))
-    assert contact == (7.0, 8.0, 0.0, 0.0, 0.0)
+    before = FloorContact(7.0, 8.0, 100.0, 100.0, 0.0)
+    assert world.contact(before) == (7.0, 8.0, 0.0, 0.0, 0.0)
 
 
 # -- limits ----------------------------------------------------------------------------

@@ -30,7 +30,9 @@ def random_actions(seed: int, n: int) -> np.ndarray:
 
 def corrections(spline: CorrectionSpline, actions_m: np.ndarray) -> np.ndarray:
     """Return (n, rows, 2), what the spline answers to each action [m]."""
-    return np.array([spline.push(action) for action in actions_m])
+    rows = spline._weights.shape[0]
+    at_rest = np.zeros((rows, 3))
+    return np.array([spline.push(action, at_rest)[:, :2] for action in actions_m])
 
 
 def naive_corrections(
@@ -105,7 +107,7 @@ def test_a_constant_action_almost_becomes_the_correction_at_any_spacing(spline):
 @pytest.mark.parametrize("order", [3, 4])
 def test_a_single_action_leaves_no_trace_after_the_support(order):
     spline = CorrectionSpline(CorrectionSettings(0.4, order), ROWS)
-    spline.push(np.array([0.02, -0.01]))
+    corrections(spline, np.array([[0.02, -0.01]]))
     later = corrections(spline, np.zeros((200, 2)))
     support = round(order * 0.4 / T)
     assert np.flatnonzero(later.any(axis=(1, 2)))[-1] == support - 2
@@ -121,7 +123,8 @@ def test_a_single_action_adds_its_own_area(order):
 
 
 def test_an_action_begins_to_act_at_once_but_without_a_jump():
-    x = CorrectionSpline(CorrectionSettings(), ROWS).push(np.array([0.02, 0.0]))[:, 0]
+    spline = CorrectionSpline(CorrectionSettings(), ROWS)
+    x = corrections(spline, np.array([[0.02, 0.0]]))[0, :, 0]
     assert x[0] == 0.0 < x[1]
 
 
@@ -165,4 +168,13 @@ def test_a_reset_forgets_all_actions():
     spline = CorrectionSpline(CorrectionSettings(), ROWS)
     corrections(spline, random_actions(2, 77))
     spline.reset()
-    np.testing.assert_array_equal(spline.push(np.zeros(2)), np.zeros((ROWS, 2)))
+    assert not corrections(spline, np.zeros((1, 2))).any()
+
+
+def test_the_correction_is_added_to_the_waist_and_leaves_its_height():
+    waist = np.random.default_rng(7).normal(size=(ROWS, 3))
+    action_m = np.array([0.02, -0.01])
+    found = CorrectionSpline(CorrectionSettings(), ROWS).push(action_m, waist)
+    spline = CorrectionSpline(CorrectionSettings(), ROWS)
+    expected = waist + np.pad(corrections(spline, action_m[None])[0], ((0, 0), (0, 1)))
+    np.testing.assert_array_equal(found, expected)

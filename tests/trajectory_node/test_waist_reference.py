@@ -67,9 +67,7 @@ def test_the_correction_is_added_to_the_static_walk(corrected):
     static = new_reference().static_waist
     spline = CorrectionSpline(CorrectionSettings(), 11)
     for segment, action in zip(corrected, ACTIONS, strict=True):
-        expected = static[segment.first_tick :][:11] + np.pad(
-            spline.push(action), ((0, 0), (0, 1))
-        )
+        expected = spline.push(action, static[segment.first_tick :][:11])
         np.testing.assert_array_equal(segment.waist, expected)
 
 

@@ -42,31 +42,33 @@ def uniform_bspline(u: NDArray[np.floating[Any]], order: int) -> NDArray[np.floa
 
 
 @njit(
-    float64[:, ::1](float64[:, ::1], float64[:, ::1], int64),
+    float64[:, ::1](float64[:, ::1], float64[:, ::1], float64[:, ::1], int64),
     cache=True,
 )
-def weighted_history(
-    weights: NDArray[Any], history: NDArray[Any], newest: int
+def corrected_waist(
+    waist: NDArray[Any], weights: NDArray[Any], history: NDArray[Any], newest: int
 ) -> NDArray[Any]:
-    """Return sum_m weights[:, m] * action of age m, actions kept in a ring.
+    """Return the waist plus sum_m weights[:, m] * action of age m.
 
     Args:
+        waist: (rows, 3) at consecutive control ticks [m].
         weights: (rows, length) per control tick and age of the action.
         history: (length, 2) ring of actions [m].
         newest: place of the action of age 0.
 
     Returns:
-        (rows, 2) correction [m].
+        (rows, 3) [m].
     """
     rows, length = weights.shape
-    correction = np.zeros((rows, history.shape[1]))
+    corrected = waist.copy()
     for row in range(rows):
-        for age in range(length):
-            weight = weights[row, age]
-            action = history[(newest - age) % length]
-            for c in range(history.shape[1]):
-                correction[row, c] += weight * action[c]
-    return correction
+        for c in range(history.shape[1]):
+            correction = 0.0
+            for age in range(length):
+                place = newest - age if age <= newest else newest - age + length
+                correction += weights[row, age] * history[place, c]
+            corrected[row, c] += correction
+    return corrected
 
 
 class CorrectionSpline:
@@ -97,18 +99,21 @@ class CorrectionSpline:
         self._history[:] = 0.0
         self._newest = 0
 
-    def push(self, action_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Take the action (dx, dy) of a learning tick; return the correction from then.
+    def push(
+        self, action_m: NDArray[np.float64], waist: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Take the action (dx, dy) of a learning tick; return the waist corrected.
 
         Args:
             action_m: (2,) [m].
+            waist: (rows, 3) at consecutive control ticks from then on [m].
 
         Returns:
-            (rows, 2) correction of the waist at consecutive control ticks [m].
+            (rows, 3) [m].
         """
         self._newest = (self._newest + 1) % len(self._history)
         self._history[self._newest] = action_m
-        return weighted_history(self._weights, self._history, self._newest)
+        return corrected_waist(waist, self._weights, self._history, self._newest)
 
     def snapshot(self) -> NDArray[np.float64]:
         """Return the (length, 2) actions by age, newest first [m]."""

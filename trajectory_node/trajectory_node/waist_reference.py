@@ -111,7 +111,7 @@ class WaistReference:
             TrajectoryError: the correction is not two finite numbers, or the walk is
                 over.
         """
-        if action_m.shape != (2,) or not math.isfinite(sum(action_m)):
+        if action_m.shape != (2,) or not math.isfinite(sum(action_m.tolist())):
             raise TrajectoryError(
                 f"correction {action_m}: must be two finite numbers [m]"
             )
@@ -119,8 +119,7 @@ class WaistReference:
             raise TrajectoryError(f"the walk of {self.plan.ticks} ticks is over")
         first = self._tick
         rows = slice(first, first + self.rows)
-        waist = self.static_waist[rows].copy()
-        waist[:, :2] += self._spline.push(action_m)
+        waist = self._spline.push(action_m, self.static_waist[rows])
         n_ticks = segment_ticks(first, self.plan.ticks)
         self._tick += n_ticks
         plan = self.plan

@@ -104,6 +104,31 @@ def fill_leg_joint_positions(
 
 
 @compiled
+def fill_leg_motion(
+    waist: Array,
+    left_foot: Array,
+    right_foot: Array,
+    geometry: ChainGeometry,
+    lower: Array,
+    upper: Array,
+    period_s: float,
+    q: Array,
+    dq: Array,
+) -> tuple[int, int, int]:
+    """Fill ``q`` (n, 12) and ``dq`` (n - 1, 12), the velocities between its rows.
+
+    Returns (status, tick, joint); velocities from an unsolved row on are no motion.
+    """
+    outcome = fill_leg_joint_positions(
+        waist, left_foot, right_foot, geometry, lower, upper, q
+    )
+    for tick in range(dq.shape[0]):
+        for joint in range(dq.shape[1]):
+            dq[tick, joint] = (q[tick + 1, joint] - q[tick, joint]) / period_s
+    return outcome
+
+
+@compiled
 def leg_directions(
     yaw: float,
     hip_roll: float,

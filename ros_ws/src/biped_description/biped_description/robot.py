@@ -8,7 +8,7 @@ world frame [m] unless the text says otherwise, joint positions in the order of
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,21 @@ from biped_description.urdf import urdf_text
 
 # Slack by which a stretched leg, a legal pose, may seem too long [m].
 _ROUNDING: Final = 1e-12
+
+
+class LegMotion(NamedTuple):
+    """Joint motion over n control ticks, as far as the legs can follow."""
+
+    q: Array
+    """(n, 12) positions [rad]; from an unsolved row on they mean nothing."""
+    dq: Array
+    """(n - 1, 12) velocities from each row to the next [rad/s]."""
+    status: int
+    """As in ``kernels``."""
+    row: int
+    """The first that has no solution, if the status is not ``SOLVED``."""
+    joint: int
+    """That cannot follow there; a knee where the pose is out of reach or no number."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +111,14 @@ class Robot:
         for side, foot in zip(LEGS, feet, strict=True):
             _require_as_many_rows(f"{side}_foot", foot, waist)
         q = np.empty((len(waist), len(JOINT_NAMES)))
-        status, tick, joint = self.solve_legs(waist, *feet, q)
+        status, tick, joint = kernels.fill_leg_joint_positions(
+            waist,
+            *feet,
+            self._geometry,
+            self.position_lower_rad,
+            self.position_upper_rad,
+            q,
+        )
         if status == kernels.BEYOND_JOINT_LIMIT:
             raise JointLimitError(
                 f"tick {tick}: {JOINT_NAMES[joint]} at {q[tick, joint]:.6g} rad is "
@@ -108,44 +130,38 @@ class Robot:
             raise self._unreachable(tick, leg, waist[tick], feet[leg][tick])
         return q
 
-    def solve_legs(
-        self, waist: Array, left_foot: Array, right_foot: Array, out: Array
-    ) -> tuple[int, int, int]:
-        """Fill ``out`` (n, 12) with joint positions: the form for the control loop.
+    def leg_motion(
+        self, waist: Array, left_foot: Array, right_foot: Array, period_s: float
+    ) -> LegMotion:
+        """Return the joint motion that follows waist and feet, for the control loop.
 
         Same poses as ``leg_joint_positions``, but reports a failure instead of raising.
-        Arrays must be C-contiguous float64; another layout or type works at the price
-        of compiling anew.
-
-        Returns:
-            ``(status, tick, joint)``, statuses as in ``kernels``. Where it is not
-            ``SOLVED``, tick is the first row that has no solution and joint the column
-            of the offending joint (the knee of the leg where the pose is out of reach
-            or no number). Rows before that tick are filled, rows after it are left as
-            they were.
+        The (n, 3) arrays must be C-contiguous float64; another layout or type works at
+        the price of compiling anew.
 
         Raises:
             InvalidInputError: a shape is wrong.
         """
         n = len(waist)
-        if not (
-            waist.shape == left_foot.shape == right_foot.shape == (n, 3)
-            and out.shape == (n, 12)
-        ):
+        if not waist.shape == left_foot.shape == right_foot.shape == (n, 3):
             raise InvalidInputError(
-                "waist, left_foot and right_foot must have shape (n, 3) and out "
-                f"(n, 12), got {waist.shape}, {left_foot.shape}, {right_foot.shape} "
-                f"and {out.shape}"
+                "waist, left_foot and right_foot must have shape (n, 3), "
+                f"got {waist.shape}, {left_foot.shape} and {right_foot.shape}"
             )
-        return kernels.fill_leg_joint_positions(
+        q = np.empty((n, len(JOINT_NAMES)))
+        dq = np.empty((max(n - 1, 0), len(JOINT_NAMES)))
+        status, row, joint = kernels.fill_leg_motion(
             waist,
             left_foot,
             right_foot,
             self._geometry,
             self.position_lower_rad,
             self.position_upper_rad,
-            out,
+            period_s,
+            q,
+            dq,
         )
+        return LegMotion(q, dq, status, row, joint)
 
     # -- forward kinematics --------------------------------------------------------
 

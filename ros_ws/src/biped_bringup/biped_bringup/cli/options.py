@@ -52,7 +52,7 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
         type=natural,
         default=DEFAULT_MEMORY_BYTES // _MEGABYTE,
         metavar="N",
-        help="memory for the walks so far, in megabytes (default %(default)s)",
+        help="memory for the walks so far, in MB (default %(default)s)",
     )
     group.add_argument(
         "--no-replay",
