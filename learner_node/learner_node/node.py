@@ -174,7 +174,7 @@ class LearnerNode(GuardedNode):
         frozen = self._settings.frozen
         walked = session.tally.evaluations if frozen else session.episodes
         # A walk that was cut short because somebody was too slow is walked again.
-        cut_short = frozen and result.end_cause is EndCause.PEER_SILENT
+        cut_short = frozen and result.end_cause in (EndCause.LATE, EndCause.PEER_SILENT)
         enough = 0 < self._settings.max_episodes <= walked and not session.trial_due
         self._done = enough and not cut_short
         if self._save_due or self._done or session.episodes % every == 0:

@@ -11,7 +11,9 @@ class EndCause(str, Enum):
     The first is success. The next two are the penalties of Table 1. The `ik_` and
     `torque_` ones are the further failures that Section 4 names. `foot_through_floor`
     and `physics_nan` mean that the physics itself can no longer be trusted. The last
-    two come from outside: who guides the robot fell silent, or a user asked for it.
+    three come from outside: in real time, the walk failed after a deadline had been
+    missed, so that nobody knows what it would have been; who guides the robot fell
+    silent; or a user asked for it.
     """
 
     COMPLETED = "completed"
@@ -23,6 +25,7 @@ class EndCause(str, Enum):
     FEET_UNLOADED = "feet_unloaded"
     FOOT_THROUGH_FLOOR = "foot_through_floor"
     PHYSICS_NAN = "physics_nan"
+    LATE = "late"
     PEER_SILENT = "peer_silent"
     RESET = "reset"
 

@@ -5,6 +5,8 @@ Pure bookkeeping around the robot; the node brings the messages and the time.
 
 from __future__ import annotations
 
+import msgspec
+
 from biped_description.errors import DescriptionError
 from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
@@ -81,10 +83,18 @@ class Pilot:
             raise RefusedMessageError(str(error)) from None
         self.segment = segment
 
-    def observe(self) -> Observation:
-        """Sum up what was walked since the last observation (real time)."""
-        self.observation = self.biped.observe()
-        return self.observation
+    def observe(self, late: bool = False) -> Observation:
+        """Sum up what was walked since the last observation (real time).
+
+        Args:
+            late: a deadline of this walk was missed: where it has failed, it did so on
+                references that nobody chose for it, and that is why it ends.
+        """
+        observation = self.biped.observe()
+        if late and observation.end_cause is not None:
+            observation = msgspec.structs.replace(observation, end_cause=EndCause.LATE)
+        self.observation = observation
+        return observation
 
     def end(self, cause: EndCause) -> Observation | None:
         """End the walk from outside; return the observation that tells so, if any."""

@@ -99,6 +99,8 @@ class RealtimeLoop:
         self._paused = False
         self._observed_ns = 0
         self._answered = False
+        self._late = False
+        """A deadline of the present walk was missed."""
         self._thread = threading.Thread(target=self._run, name="realtime", daemon=True)
 
     def set_factor(self, factor: float) -> None:
@@ -123,6 +125,7 @@ class RealtimeLoop:
 
     def begin(self) -> None:
         """Begin the next walk."""
+        self._late = False
         self._give_out(self._pilot.begin())
 
     def segment_arrived(self) -> None:
@@ -178,7 +181,8 @@ class RealtimeLoop:
         if over or due:
             if not self._answered:
                 self._punctuality.missed_deadlines += 1
-            self._give_out(self._pilot.observe())
+                self._late = True
+            self._give_out(self._pilot.observe(self._late))
 
     def _give_out(self, observation: Observation) -> None:
         self._observed_ns = time.monotonic_ns()

@@ -17,6 +17,7 @@ def test_these_are_all_the_words():
         "feet_unloaded",
         "foot_through_floor",
         "physics_nan",
+        "late",
         "peer_silent",
         "reset",
     ]

@@ -220,7 +220,8 @@ def _walked(graph: GraphWatch) -> bool:
     """Return whether the walk is over; one cut short by the machine is repeated."""
     result = graph.result
     return result is not None and (
-        result.end_cause is not EndCause.PEER_SILENT or graph.results >= _ATTEMPTS
+        result.end_cause not in (EndCause.LATE, EndCause.PEER_SILENT)
+        or graph.results >= _ATTEMPTS
     )
 
 
