@@ -128,13 +128,13 @@ def session():
         ask("pause", "pause while paused")
         ask("resume", "resume")
         ask("step", "step while playing")
-        wait_for(lambda: len(listener.heard["/biped/stance"]) > 2)
+        wait_for(lambda: len(listener.heard["/biped/plan"]) > 2)
         ask("pause", "pause")
         done.while_paused.append(listener.settle())
         ask("step", "step while paused again")
         wait_for(lambda: len(listener.order) > done.while_paused[0])
         done.while_paused.append(listener.settle())
-        done.passes = len(listener.heard["/biped/stance"])
+        done.passes = len(listener.heard["/biped/plan"])
         done.status, done.words = player.end(signal.SIGINT)
     return done
 
