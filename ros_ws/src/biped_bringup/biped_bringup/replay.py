@@ -23,7 +23,7 @@ from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.biped import BipedSnapshot
 
-DEFAULT_MEMORY_BYTES = 500_000_000
+DEFAULT_MEMORY_BYTES = 200_000_000
 # What they take in the process; benchmarks/replay.py asks the system if it is true.
 NODE_BYTES = 1_250
 SNAPSHOT_BYTES = 165_000
