@@ -35,7 +35,7 @@ _VERBS = (
     ("interface", "show", "sensor_msgs/msg/JointState"),
 )
 _LINES = ("ros2 to", "ros2 topic e")
-_TAB_BOUND = 6.0  # times a start of Python
+_TAB_BOUND = 4.0  # times a start of Python
 _REPEATS = 5
 _VERB_BOUND_S = 1.5
 _HZ_S = 10.0

@@ -69,7 +69,7 @@ class Settings:
     @final
     def __post_init__(self) -> None:
         """Refuse values of the wrong type, out of range or at odds with one another."""
-        check_ranges(self)
+        _check_fields(self)
         self.check_together()
 
     def check_together(self) -> None:
@@ -179,7 +179,7 @@ def _forms(kind: Any, rules: Mapping[str, Any]) -> Iterator[tuple[Any, str]]:
 # -- checking --------------------------------------------------------------------------
 
 
-def check_ranges(settings: Any) -> None:
+def _check_fields(settings: Any) -> None:
     """Check every field of a settings object against its declaration.
 
     A whole number becomes a float, and a list a tuple, where such is declared.
