@@ -1,7 +1,7 @@
 """The whole environment tick against bare `stepSimulation`, on the same motion.
 
-Two robots walk the static walk, limits out of the way, and take turns, a fifth of a
-second each: one as the learner has it, the other told by hand what the first one's
+Two robots walk the static walk, limits out of the way, and take turns of a fifth of a
+simulated second: one as the learner has it, the other told by hand what the first one's
 servos were told, with the time inside `step` alone taken. For every learning tick the
 median over the walks counts, so that neither a drift of the machine's speed nor what
 else runs on it gets into the ratio.
@@ -10,6 +10,7 @@ else runs on it gets into the ratio.
 from __future__ import annotations
 
 import time
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,17 +19,19 @@ from benchmarks.report import Figure
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import Walker
 from biped_common.settings import from_mapping
-from biped_common.timing import TICKS_PER_LEARNING_TICK
+from biped_common.timing import CONTROL_PERIOD_S, TICKS_PER_LEARNING_TICK
 from learner_node.walking.walks import FrozenWalk, static_walk
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
+from sim_node.bullet_kernels import command_servos, step_physics
 from sim_node.control_tick import ControlTick
+from sim_node.pybullet_world import PyBulletWorld
 
 _WALKS = 9
 _TURN = 10  # learning ticks
 _RATIO_BOUND = 1.3
 
-Command = tuple[list[float], list[float]]
+Command = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def measure() -> list[Figure]:
@@ -86,11 +89,12 @@ class _Turns:
         return self._answers.respond(observation)
 
     def _bare_tick_s(self) -> float:
-        world, spent = self._bare.world, 0.0
+        world, spent = cast(PyBulletWorld, self._bare.world), 0.0
+        robot = world.client, world.robot, world.joint_numbers, world.torque_limits_nm
         for _ in range(TICKS_PER_LEARNING_TICK):
-            world.command(*next(self._commands))
+            command_servos(*robot, *next(self._commands))
             start = time.perf_counter()
-            world.step()
+            step_physics(world.client)
             spent += time.perf_counter() - start
         return spent
 
@@ -105,5 +109,6 @@ def _recorded_commands(settings: RunSettings) -> list[Command]:
     walker = Walker(settings, np.random.default_rng(0), record)
     walker.walk(static_walk(settings.learner, walker.walk_ticks))
     walker.close()
-    velocities = (np.diff(references, axis=0) / 0.002).tolist()
-    return list(zip(references[:-1], velocities, strict=True))
+    positions = np.array(references)
+    velocities = np.diff(positions, axis=0) / CONTROL_PERIOD_S
+    return list(zip(positions[:-1], velocities, strict=True))

@@ -79,7 +79,7 @@ def test_a_forbidden_import_is_refused(house: Path, module: str, imported: str) 
     [
         ("biped_lab/a.py", "msgs_json"),
         ("biped_bringup/a.py", "sim_node"),
-        ("sim_node/pybullet_world.py", "pybullet"),
+        ("sim_node/bullet_api.py", "pybullet"),
         ("sim_node/node.py", "rclpy"),
         ("sim_node/node.py", "rclpy.node"),
         ("biped_ros/a.py", "rclpy"),

@@ -29,8 +29,9 @@ from sim_node.engines import plant_of
 from sim_node.errors import SnapshotError, WorldClosedError
 from sim_node.joint_references import JointReferences, solve, standing
 from sim_node.limit_watch import LimitCounts, LimitWatch
+from sim_node.physics import Array
 from sim_node.settings import SimSettings
-from sim_node.tick_sums import packed_row, sum_up
+from sim_node.tick_sums import TickRows
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
 _SETTLING_TICKS = 150
@@ -115,19 +116,19 @@ class SimulatedBiped:
         self._limit_watch = LimitWatch(
             settings.limits,
             robot.settings.velocity_limit_rad_s,
-            torque_limits_nm.tolist(),
+            torque_limits_nm,
         )
         self._references = standing(start)
         self._snapshots: set[BipedSnapshot] = set()
-        self._rows: list[bytes] = []
-        """Control ticks since the last observation, as `packed_row` packs them."""
+        self._rows = TickRows()
+        """Since the last observation."""
         self._disturbance = draw_disturbance(
             replace(settings.disturbances, push_force_n=0.0, mass_error=0.0),
             len(LINK_NAMES),
             np.random.default_rng(0),
         )
         self._watch = _Watch()
-        self._settle()
+        self._standing_contact = self._settle()
         self._standing = self.world.save()
 
     # -- a walk --------------------------------------------------------------------
@@ -146,12 +147,11 @@ class SimulatedBiped:
             )
         if disturbances.mass_error > 0.0:
             self.world.set_mass_factors(self._disturbance.mass_factors)
-        contact = self.world.contact(NO_CONTACT)
         _, velocity = self.world.waist()
         self._watch = _Watch(
             episode=episode,
             clock_ticks=self._watch.clock_ticks + 1,
-            contact=contact,
+            contact=self._standing_contact,
             waist_velocity=velocity[:2],
         )
         self._references = standing(self._start)
@@ -220,49 +220,49 @@ class SimulatedBiped:
         """Walk to a control tick, or to the one that ends the walk."""
         # Once per 2 ms of every walk: what does not change is looked up before.
         world, watch, references = self.world, self._watch, self._references
-        push, check, on_tick = self._disturbance, self._limit_watch.check, self.on_tick
-        row = self._row()
+        push, check = self._disturbance, self._limit_watch.check
+        first = row = self._row()
+        joints = self._rows.joints(to_tick - watch.control_tick)
+        zmp = []
         while watch.control_tick < to_tick and watch.end_cause is None:
             if push.push_from_tick <= watch.control_tick < push.push_to_tick:
                 world.push(push.push_force_n)
-            dq_reference = references.dq[row]
-            world.command(references.q[row], dq_reference)
-            world.step()
+            measured = joints[row - first]
+            contact = world.step(references.q[row], references.dq[row], measured)
             row += 1
             watch.clock_ticks += 1
             watch.control_tick += 1
-            q_reference, zmp_reference = references.q[row], references.zmp[row]
-            position, velocity, torque = world.joints()
-            watch.contact = contact = world.contact(watch.contact)
+            if not contact.loaded:
+                contact = contact.holding(watch.contact)
+            watch.contact = contact
             zmp_x_m, zmp_y_m = contact.zmp_x_m, contact.zmp_y_m
-            zmp_error_m = math.hypot(
-                zmp_x_m - zmp_reference[0], zmp_y_m - zmp_reference[1]
-            )
-            watch.end_cause = check(
-                watch.limits, position, velocity, torque, contact, zmp_error_m
-            )
-            self._rows.append(
-                packed_row(
-                    *position, *velocity, *torque, *q_reference, *dq_reference,
-                    zmp_x_m, zmp_y_m, zmp_error_m,
-                )
-            )  # fmt: skip
-            if on_tick is not None:
-                on_tick(
-                    ControlTick(
-                        watch.clock_ticks,
-                        watch.control_tick,
-                        q_reference,
-                        dq_reference,
-                        position,
-                        velocity,
-                        torque,
-                        contact,
-                        zmp_reference,
-                        zmp_error_m,
-                        references.phase(row),
-                    )
-                )
+            reference_x_m, reference_y_m = references.zmp[row]
+            error_m = math.hypot(zmp_x_m - reference_x_m, zmp_y_m - reference_y_m)
+            zmp.append((zmp_x_m, zmp_y_m, error_m))
+            watch.end_cause = check(watch.limits, measured, contact, error_m)
+            if self.on_tick is not None:
+                self.on_tick(self._control_tick(row, measured, error_m))
+        self._rows.add(references.q[first + 1 : row + 1], references.dq[first:row], zmp)
+
+    def _control_tick(
+        self, row: int, measured: Array, zmp_error_m: float
+    ) -> ControlTick:
+        """Return the control tick that has led to a row of the references."""
+        watch, references = self._watch, self._references
+        position, velocity, torque = measured.reshape(3, -1).tolist()
+        return ControlTick(
+            watch.clock_ticks,
+            watch.control_tick,
+            references.q[row].tolist(),
+            references.dq[row - 1].tolist(),
+            tuple(position),
+            tuple(velocity),
+            tuple(torque),
+            watch.contact,
+            references.zmp[row],
+            zmp_error_m,
+            references.phase(row),
+        )
 
     def observe(self) -> Observation:
         """Sum up the control ticks since the last observation, as seen from the last.
@@ -286,7 +286,7 @@ class SimulatedBiped:
         zmp_error = _measured(watch.contact, references.zmp[row], noise[1])
         acceleration = _measured(velocity, watch.waist_velocity, noise[2], period_s)
         watch.waist_velocity = velocity[:2]
-        sums = sum_up(self._rows, watch.control_tick, watch.trajectory)
+        sums = self._rows.sum_up(watch.control_tick, watch.trajectory)
         self._rows.clear()
         return Observation(
             simulation=self._name,
@@ -404,14 +404,16 @@ class SimulatedBiped:
         if self._watch.end_cause is not None:
             raise ValueError(f"the walk is over: {self._watch.end_cause}")
 
-    def _settle(self) -> None:
+    def _settle(self) -> FloorContact:
+        """Let the robot come to rest in the stance; return what the floor feels."""
         pose = (self._start.waist[:1], self._start.left_foot[:1], self._start.right_foot[:1])  # fmt: skip  # noqa: E501
         q = self.robot.leg_joint_positions(*pose)[0]
         self.world.place(pose[0][0], q)
-        still = [0.0] * len(q)
+        still, measured = np.zeros_like(q), np.zeros(3 * len(q))
+        contact = NO_CONTACT
         for _ in range(_SETTLING_TICKS):
-            self.world.command(q.tolist(), still)
-            self.world.step()
+            contact = self.world.step(q, still, measured)
+        return contact
 
     def _row(self) -> int:
         """Return the row of the references at which the robot is."""

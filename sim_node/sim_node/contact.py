@@ -14,5 +14,14 @@ class FloorContact(NamedTuple):
     right_load_n: float
     penetration_m: float
 
+    @property
+    def loaded(self) -> bool:
+        """Whether a foot carries load; without, there is no ZMP."""
+        return self.left_load_n + self.right_load_n > 0.0
+
+    def holding(self, before: FloorContact) -> FloorContact:
+        """Return the same with the ZMP of the tick before, for one without load."""
+        return self._replace(zmp_x_m=before.zmp_x_m, zmp_y_m=before.zmp_y_m)
+
 
 NO_CONTACT = FloorContact(0.0, 0.0, 0.0, 0.0, 0.0)

@@ -5,24 +5,30 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_description import kernels
+from biped_description.joints import JOINT_NAMES
 from biped_description.robot import Robot
 from msgs_json.segment import WaistSegment
+from sim_node.physics import Array
+
+_NO_MOTION = np.empty((0, len(JOINT_NAMES)))
 
 PlannedPhase = tuple[bool, bool, int]
 """The gait's phase at one control tick: right support, double support, step index."""
 
 
 class JointReferences(NamedTuple):
-    """A segment with the joint motion that follows it, as plain numbers by row."""
+    """A segment with the joint motion that follows it, row by row."""
 
     segment: WaistSegment
     rows: int
     """Rows that the legs can reach, from the first on."""
-    q: list[list[float]]
+    q: Array
     """(rows, 12) [rad]"""
-    dq: list[list[float]]
+    dq: Array
     """(rows - 1, 12) from each row to the next [rad/s]"""
     zmp: list[list[float]]
     """(rows, 2) [m]"""
@@ -40,7 +46,7 @@ class JointReferences(NamedTuple):
 def standing(start: WaistSegment) -> JointReferences:
     """Return references that hold a stance and lead nowhere."""
     zmp = start.zmp_reference[:1].tolist()
-    return JointReferences(start, rows=1, q=[], dq=[], zmp=zmp)
+    return JointReferences(start, rows=1, q=_NO_MOTION, dq=_NO_MOTION, zmp=zmp)
 
 
 def solve(
@@ -74,8 +80,8 @@ def solve(
     references = JointReferences(
         segment,
         rows=rows if motion.status == kernels.SOLVED else motion.row,
-        q=motion.q.tolist(),
-        dq=motion.dq.tolist(),
+        q=motion.q,
+        dq=motion.dq,
         zmp=zmp,
     )
     return references, motion.status

@@ -13,7 +13,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.joints import JOINT_NAMES
@@ -22,11 +21,9 @@ from biped_description.robot import Robot
 from biped_description.settings import RobotSettings
 from sim_node.contact import NO_CONTACT, FloorContact
 from sim_node.errors import SnapshotError
-from sim_node.physics import Numbers, Physics, Vector, WaistState
+from sim_node.physics import Array, Physics, Vector, WaistState
 
-Array = NDArray[np.float64]
-
-_NO_TORQUE = (0.0,) * len(JOINT_NAMES)
+_NO_TORQUE = np.zeros(len(JOINT_NAMES))
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 _ON_THE_FLOOR = np.array([1.0, 1.0, 0.0])
 # A foot is the lower one by more than rounding [m].
@@ -38,10 +35,6 @@ _TOUCHES_M = 1e-6
 class _State(NamedTuple):
     """All that the next step depends on; arrays are replaced, never written to."""
 
-    q: Array
-    """(12,) [rad]"""
-    dq: Array
-    """(12,) [rad/s]"""
     feet: Array
     """(2, 3) left and right, world frame [m]."""
     anchored: int
@@ -54,7 +47,6 @@ class _State(NamedTuple):
     """(13, 3) of the links [m]."""
     coms_before: Array
     """(13, 3) one tick ago [m]."""
-    contact: FloorContact = NO_CONTACT
 
 
 class KinematicWorld(Physics):
@@ -81,8 +73,6 @@ class KinematicWorld(Physics):
         """Put the robot at rest, upright, with its waist and joints as given."""
         (coms,) = self._robot.link_com_positions(waist[None], q[None])
         self._state = _State(
-            q=q,
-            dq=np.zeros_like(q),
             feet=waist + self._feet_from_waist(q),
             anchored=0,
             waist=waist,
@@ -91,18 +81,15 @@ class KinematicWorld(Physics):
             coms_before=coms,
         )
 
-    def command(self, q: list[float], dq: list[float]) -> None:
-        """Take the references for the next tick."""
-        self._state = self._state._replace(q=np.array(q), dq=np.array(dq))
-
     def push(self, force_n: Vector) -> None:
         """Push the torso at its CoM during the next tick: a moment on the ZMP."""
         self._push = force_n
 
-    def step(self) -> None:
+    def step(self, q: Array, dq: Array, joints: Array) -> FloorContact:
         """Move every joint to its next reference."""
         old = self._state
-        q = old.q + CONTROL_PERIOD_S * old.dq
+        q = q + CONTROL_PERIOD_S * dq
+        joints[:] = np.concatenate([q, dq, _NO_TORQUE])
         feet_from_waist = self._feet_from_waist(q)
         anchored = old.anchored
         if feet_from_waist[1 - anchored, 2] < feet_from_waist[anchored, 2] - _LOWER_M:
@@ -122,31 +109,17 @@ class KinematicWorld(Physics):
         )
         feet = waist + feet_from_waist
         self._state = _State(
-            q=q,
-            dq=old.dq,
             feet=feet,
             anchored=anchored,
             waist=waist,
             waist_velocity=(waist - old.waist) / CONTROL_PERIOD_S,
             coms=coms,
             coms_before=old.coms,
-            contact=_contact(zmp_x, zmp_y, load, feet, self._robot.settings),
         )
         self._push = (0.0, 0.0, 0.0)
+        return _contact(zmp_x, zmp_y, load, feet, self._robot.settings)
 
     # -- readings ------------------------------------------------------------------
-
-    def joints(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Return positions, velocities and torques of the joints."""
-        state = self._state
-        return tuple(state.q.tolist()), tuple(state.dq.tolist()), _NO_TORQUE
-
-    def contact(self, before: FloorContact) -> FloorContact:
-        """Return what the floor felt in the last step."""
-        contact = self._state.contact
-        if contact.left_load_n + contact.right_load_n > 0.0:
-            return contact
-        return contact._replace(zmp_x_m=before.zmp_x_m, zmp_y_m=before.zmp_y_m)
 
     def waist(self) -> WaistState:
         """Return where the waist is and how it moves."""

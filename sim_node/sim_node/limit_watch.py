@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
-import operator
 from dataclasses import dataclass
+from typing import Any
+
+from numba import njit
+from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_US, microseconds
 from msgs_json.end_cause import EndCause
 from sim_node.contact import FloorContact
+from sim_node.physics import Array
 from sim_node.settings import LimitSettings
 
 # A servo at this share of its limit counts as saturated.
@@ -32,22 +36,19 @@ class LimitWatch:
         self,
         limits: LimitSettings,
         velocity_limit_rad_s: float,
-        torque_limits_nm: list[float],
+        torque_limits_nm: Array,
     ) -> None:
         """Take the limits; the torques are those that the servos can reach."""
         self._limits = limits
         self._velocity_limit_rad_s = velocity_limit_rad_s
         self._unloaded_ticks = _ticks(limits.unloaded_feet_s)
         self._saturated_ticks = _ticks(limits.torque_saturation_s)
-        self._torque_marks = [_SATURATED * limit for limit in torque_limits_nm]
-        self._lowest_mark = min(self._torque_marks)
+        self._torque_marks = _SATURATED * torque_limits_nm
 
     def check(
         self,
         counts: LimitCounts,
-        position: tuple[float, ...],
-        velocity: tuple[float, ...],
-        torque: tuple[float, ...],
+        joints: Array,
         contact: FloorContact,
         zmp_error_m: float,
     ) -> EndCause | None:
@@ -55,30 +56,23 @@ class LimitWatch:
 
         Args:
             counts: of the walk, brought up to date here.
-            position: (12,) [rad].
-            velocity: (12,) [rad/s].
-            torque: (12,) [N m].
+            joints: (36,) positions [rad], velocities [rad/s] and torques [N m].
             contact: with the floor.
             zmp_error_m: norm.
         """
         limits = self._limits
-        loaded = contact.left_load_n + contact.right_load_n > 0.0
-        counts.unloaded = 0 if loaded else counts.unloaded + 1
-        # A norm is finite only if all joints' values are, and none of them is larger:
-        # mostly it settles what would else be asked of each.
-        speed, effort = math.hypot(*velocity), math.hypot(*torque)
-        saturated = effort >= self._lowest_mark and self._saturated(torque)
+        finite, too_fast, saturated = _judge(
+            joints, self._velocity_limit_rad_s, self._torque_marks
+        )
+        counts.unloaded = 0 if contact.loaded else counts.unloaded + 1
         counts.saturated = counts.saturated + 1 if saturated else 0
-        if not math.isfinite(zmp_error_m + math.hypot(*position) + speed + effort):
+        if not (finite and math.isfinite(zmp_error_m)):
             return EndCause.PHYSICS_NAN
         if contact.penetration_m > limits.foot_penetration_m:
             return EndCause.FOOT_THROUGH_FLOOR
         if zmp_error_m >= limits.zmp_error_m:
             return EndCause.ZMP_ERROR
-        if (
-            speed >= self._velocity_limit_rad_s
-            and max(map(abs, velocity)) >= self._velocity_limit_rad_s
-        ):
+        if too_fast:
             return EndCause.JOINT_VELOCITY
         if counts.saturated >= self._saturated_ticks:
             return EndCause.TORQUE_SATURATION
@@ -86,8 +80,20 @@ class LimitWatch:
             return EndCause.FEET_UNLOADED
         return None
 
-    def _saturated(self, torque: tuple[float, ...]) -> bool:
-        return any(map(operator.ge, map(abs, torque), self._torque_marks))
+
+@njit("UniTuple(boolean, 3)(float64[::1], float64, float64[::1])", cache=True)
+def _judge(
+    joints: NDArray[Any], velocity_limit: float, torque_marks: NDArray[Any]
+) -> tuple[bool, bool, bool]:
+    """Return whether all is finite, some joint too fast, some servo saturated."""
+    n = len(torque_marks)
+    finite, too_fast, saturated = True, False, False
+    for value in joints:
+        finite = finite and math.isfinite(value)
+    for i in range(n):
+        too_fast = too_fast or abs(joints[n + i]) >= velocity_limit
+        saturated = saturated or abs(joints[2 * n + i]) >= torque_marks[i]
+    return finite, too_fast, saturated
 
 
 def _ticks(duration_s: float) -> int:

@@ -16,7 +16,7 @@ from biped_description.robot import Robot
 from sim_node.contact import FloorContact
 
 Vector: TypeAlias = tuple[float, float, float]
-Numbers: TypeAlias = tuple[float, ...]
+Array: TypeAlias = NDArray[np.float64]
 
 
 class WaistState(NamedTuple):
@@ -31,9 +31,7 @@ class WaistState(NamedTuple):
 class Physics(Protocol):
     """One plant. Numbers that the physics leaves undefined are handed out as NaN."""
 
-    def __init__(
-        self, robot: Robot, friction: float, torque_limits_nm: NDArray[np.float64]
-    ) -> None:
+    def __init__(self, robot: Robot, friction: float, torque_limits_nm: Array) -> None:
         """Build the plant.
 
         Args:
@@ -42,44 +40,32 @@ class Physics(Protocol):
             torque_limits_nm: (12,) that the servos can reach.
         """
 
-    def set_mass_factors(self, factors: NDArray[np.float64]) -> None:
+    def set_mass_factors(self, factors: Array) -> None:
         """Scale the nominal mass and inertia of the (13,) links."""
 
     # -- motion --------------------------------------------------------------------
 
-    def place(self, waist: NDArray[np.float64], q: NDArray[np.float64]) -> None:
+    def place(self, waist: Array, q: Array) -> None:
         """Put the robot at rest, upright: waist (3,) [m], joints (12,) [rad]."""
-
-    def command(self, q: list[float], dq: list[float]) -> None:
-        """Tell the servos where the joints are to be.
-
-        Args:
-            q: (12,) reference positions now [rad].
-            dq: (12,) reference velocities until the next tick [rad/s].
-        """
 
     def push(self, force_n: Vector) -> None:
         """Push the torso at its CoM during the next control tick."""
 
-    def step(self) -> None:
-        """Go on by one control tick."""
-
-    # -- readings, after a step ----------------------------------------------------
-
-    def joints(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Return what the joints measure, (12,) each.
-
-        Returns:
-            Positions [rad], velocities [rad/s] and torques of the servos [N m].
-        """
-
-    def contact(self, before: FloorContact) -> FloorContact:
-        """Return what the floor felt in the last step.
+    def step(self, q: Array, dq: Array, joints: Array) -> FloorContact:
+        """Drive the joints for one control tick, and read the sensors.
 
         Args:
-            before: what it felt a tick ago. With no load on either foot there is no
-                ZMP; loads are zero then, and that of `before` is held.
+            q: (12,) reference positions now [rad].
+            dq: (12,) reference velocities until the next tick [rad/s].
+            joints: (36,) filled with the measured positions [rad], velocities [rad/s]
+                and torques of the servos [N m].
+
+        Returns:
+            What the floor felt. With no load on either foot there is no ZMP, and its
+            place is of no meaning.
         """
+
+    # -- readings ------------------------------------------------------------------
 
     def waist(self) -> WaistState:
         """Return where the waist is and how it moves."""

@@ -1,308 +1,284 @@
-"""Full physics: a PyBullet world with a floor and the biped.
+"""Full physics: a Bullet world with a floor and the biped.
 
-Every call carries the client's id, so that several worlds can live in one process.
-Dantzig's solver gives a ZMP clean to about 1 mm; the default sequential-impulse solver
-is slower here and its contact forces ring.
+Every call carries its client, so that several worlds can live in one process. Dantzig's
+solver gives a ZMP clean to about 1 mm; the default sequential-impulse solver is slower
+here and its contact forces ring.
 """
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Sequence
 from tempfile import NamedTemporaryFile
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.joints import JOINT_NAMES
 from biped_description.links import CONTACT_LINKS
 from biped_description.multilink_zmp import GRAVITY_M_S2
 from biped_description.robot import Robot
+from sim_node.bullet_api import (
+    LCP_DANTZIG,
+    USE_INERTIA_FROM_FILE,
+    VELOCITY_CONTROL,
+    WORLD_FRAME,
+    api,
+)
+from sim_node.bullet_kernels import NUMBER, U_INDEX, read_base, tick, waist_state
 from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
-from sim_node.physics import Numbers, Physics, Vector, WaistState
+from sim_node.physics import Array, Physics, Vector, WaistState
 from sim_node.quiet import engine_chatter_dropped
 
-with engine_chatter_dropped():
-    import pybullet
-
-# Share of its position and speed errors that the servo takes back per tick.
-POSITION_GAIN = 0.5
-VELOCITY_GAIN = 1.0
 _BASE_LINK = -1
-_ANY_LINK = -2
-# Places in what `getJointInfo` returns.
-_JOINT_NAME, _LINK_NAME = 1, 12
-# Places in a contact point, with the robot as body A.
-_LINK_A, _POSITION_ON_B, _DISTANCE, _NORMAL_FORCE = 3, 6, 8, 9
+
+
+class _JointInfo(ctypes.Structure):
+    """The head of the API's b3JointInfo."""
+
+    _fields_ = (
+        ("link_name", ctypes.c_char * 1024),
+        ("joint_name", ctypes.c_char * 1024),
+        ("joint_type", ctypes.c_int),
+        ("q_index", ctypes.c_int),
+        ("u_index", ctypes.c_int),
+        ("number", ctypes.c_int),
+        ("rest", ctypes.c_byte * 1024),
+    )
 
 
 class PyBulletWorld(Physics):
     """Floor and robot in a world of their own; see `Physics`."""
 
-    def __init__(
-        self, robot: Robot, friction: float, torque_limits_nm: NDArray[np.float64]
-    ) -> None:
+    def __init__(self, robot: Robot, friction: float, torque_limits_nm: Array) -> None:
         """Open a world, with the robot standing at the origin."""
-        self.client: int = pybullet.connect(pybullet.DIRECT)
+        self.client: int = api.b3ConnectPhysicsDirect()
         with engine_chatter_dropped():
-            pybullet.setPhysicsEngineParameter(
-                fixedTimeStep=CONTROL_PERIOD_S,
-                numSubSteps=0,
-                constraintSolverType=pybullet.CONSTRAINT_SOLVER_LCP_DANTZIG,
-                globalCFM=1e-6,
-                erp=0.2,
-                contactERP=0.2,
-                frictionERP=0.2,
-                deterministicOverlappingPairs=1,
-                physicsClientId=self.client,
-            )
-        pybullet.setGravity(0.0, 0.0, -GRAVITY_M_S2, physicsClientId=self.client)
-        self.floor: int = self._make_floor()
-        self.robot: int = self._load_robot(robot)
+            self._set_engine_parameters()
+        self.floor = self._make_floor()
+        self.robot = self._load_robot(robot)
         self._torso_com_height_m = robot.settings.torso_com_height_m
-        # The engine gives a joint and the link that it moves the same number.
-        numbers = self._numbers()
-        self.joint_numbers: list[int] = [numbers[name] for name in JOINT_NAMES]
-        self.left_sole, self.right_sole = (numbers[name] for name in CONTACT_LINKS)
-        self._links = [_BASE_LINK, *self.joint_numbers]
-        self._masses = [self._dynamics(link)[0] for link in self._links]
-        self._inertias = [self._dynamics(link)[2] for link in self._links]
+        infos = [self._joint_info(number) for number in range(len(JOINT_NAMES))]
+        joints = {info.joint_name.decode(): info for info in infos}
+        ordered = [joints[name] for name in JOINT_NAMES]
+        self.joint_numbers = np.array(
+            [
+                [info.number for info in ordered],
+                [info.q_index for info in ordered],
+                [info.u_index for info in ordered],
+            ],
+            dtype=np.int32,
+        )
+        # The API gives a joint and the link that it moves the same number.
+        links = {info.link_name.decode(): info.number for info in infos}
+        self.left_sole, self.right_sole = (links[name] for name in CONTACT_LINKS)
+        self._links = [_BASE_LINK, *self.joint_numbers[NUMBER].tolist()]
+        self._mass_properties = np.array([self._dynamics(link) for link in self._links])
         for link in self._links:
-            self._change_dynamics(
-                self.robot,
-                link,
-                linearDamping=0.0,
-                angularDamping=0.0,
-                jointDamping=0.0,
-                rollingFriction=0.0,
-                spinningFriction=0.0,
-                restitution=0.0,
-            )
-        # The engine multiplies the coefficients of the two bodies; the floor's is 1.
+            self._take_away_losses(self.robot, link)
+        # The API multiplies the coefficients of the two bodies; the floor's is 1.
         for sole in (self.left_sole, self.right_sole):
-            self._change_dynamics(self.robot, sole, lateralFriction=friction)
-        # The engine's default velocity motors would brake every joint.
-        n_joints = len(self.joint_numbers)
-        pybullet.setJointMotorControlArray(
-            self.robot,
-            self.joint_numbers,
-            pybullet.VELOCITY_CONTROL,
-            forces=[0.0] * n_joints,
-            physicsClientId=self.client,
-        )
-        self._servo = (
-            torque_limits_nm.tolist(),
-            [POSITION_GAIN] * n_joints,
-            [VELOCITY_GAIN] * n_joints,
-            self.client,
-        )
+            self._set_friction(self.robot, sole, friction)
+        self._disable_default_motors()
+        self.torque_limits_nm = torque_limits_nm
+        self._kept: set[int] = set()
 
-    def set_mass_factors(self, factors: NDArray[np.float64]) -> None:
+    def set_mass_factors(self, factors: Array) -> None:
         """Scale the nominal mass and inertia of the (13,) links."""
-        for link, mass, inertia, factor in zip(
-            self._links, self._masses, self._inertias, factors, strict=True
-        ):
-            self._change_dynamics(
-                self.robot,
-                link,
-                mass=mass * factor,
-                localInertiaDiagonal=[moment * factor for moment in inertia],
+        scaled = (self._mass_properties * factors[:, None]).tolist()
+        for link, (mass, *inertia) in zip(self._links, scaled, strict=True):
+            command = api.b3InitChangeDynamicsInfo(self.client)
+            api.b3ChangeDynamicsInfoSetMass(command, self.robot, link, mass)
+            api.b3ChangeDynamicsInfoSetLocalInertiaDiagonal(
+                command, self.robot, link, _doubles(inertia)
             )
+            self._submit(command)
 
     # -- motion --------------------------------------------------------------------
 
-    def place(self, waist: NDArray[np.float64], q: NDArray[np.float64]) -> None:
+    def place(self, waist: Array, q: Array) -> None:
         """Put the robot at rest, upright, with its waist and joints as given."""
-        base = (waist[0], waist[1], waist[2] + self._torso_com_height_m)
-        pybullet.resetBasePositionAndOrientation(
-            self.robot, base, (0.0, 0.0, 0.0, 1.0), physicsClientId=self.client
-        )
-        pybullet.resetBaseVelocity(
-            self.robot, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), physicsClientId=self.client
-        )
-        for joint, position in zip(self.joint_numbers, q.tolist(), strict=True):
-            pybullet.resetJointState(
-                self.robot, joint, position, 0.0, physicsClientId=self.client
-            )
-
-    # Once a tick: arguments by position, since keywords take a tenth of the time.
-
-    def command(self, q: list[float], dq: list[float]) -> None:
-        """Give the servos their references for the next tick."""
-        pybullet.setJointMotorControlArray(
-            self.robot,
-            self.joint_numbers,
-            pybullet.POSITION_CONTROL,
-            q,
-            dq,
-            *self._servo,
-        )
-
-    def step(self) -> None:
-        """Go on by one control tick."""
-        pybullet.stepSimulation(self.client)
+        x, y, z = waist.tolist()
+        command = api.b3CreatePoseCommandInit(self.client, self.robot)
+        z += self._torso_com_height_m
+        api.b3CreatePoseCommandSetBasePosition(command, x, y, z)
+        api.b3CreatePoseCommandSetBaseOrientation(command, 0.0, 0.0, 0.0, 1.0)
+        self._submit(command)
+        command = api.b3CreatePoseCommandInit(self.client, self.robot)
+        at_rest = _doubles((0.0, 0.0, 0.0))
+        api.b3CreatePoseCommandSetBaseLinearVelocity(command, at_rest)
+        api.b3CreatePoseCommandSetBaseAngularVelocity(command, at_rest)
+        self._submit(command)
+        for joint, position in zip(self._links[1:], q.tolist(), strict=True):
+            command = api.b3CreatePoseCommandInit(self.client, self.robot)
+            of_joint = self.client, command, joint
+            api.b3CreatePoseCommandSetJointPosition(*of_joint, position)
+            api.b3CreatePoseCommandSetJointVelocity(*of_joint, 0.0)
+            self._submit(command)
 
     def push(self, force_n: Vector) -> None:
         """Push the torso at its CoM during the next control tick."""
-        position, _ = pybullet.getBasePositionAndOrientation(
-            self.robot, physicsClientId=self.client
-        )
-        pybullet.applyExternalForce(
+        base = np.empty(13)
+        read_base(self.client, self.robot, base)
+        command = api.b3ApplyExternalForceCommandInit(self.client)
+        api.b3ApplyExternalForce(
+            command,
             self.robot,
             _BASE_LINK,
-            force_n,
-            position,
-            pybullet.WORLD_FRAME,
-            physicsClientId=self.client,
+            _doubles(force_n),
+            base.ctypes.data,
+            WORLD_FRAME,
+        )
+        self._submit(command)
+
+    def step(self, q: Array, dq: Array, joints: Array) -> FloorContact:
+        """Drive the joints for one control tick, and read the sensors."""
+        return FloorContact(
+            *tick(
+                self.client,
+                self.robot,
+                self.floor,
+                self.left_sole,
+                self.joint_numbers,
+                self.torque_limits_nm,
+                q,
+                dq,
+                joints,
+            )
         )
 
     # -- readings ------------------------------------------------------------------
 
-    def joints(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Return positions, velocities and torques of the joints."""
-        states = pybullet.getJointStates(self.robot, self.joint_numbers, self.client)
-        position, velocity, _, torque = zip(*states)  # noqa: B905
-        return position, velocity, torque
-
-    def contact(self, before: FloorContact) -> FloorContact:
-        """Return what the floor felt in the last step."""
-        points = pybullet.getContactPoints(
-            self.robot, self.floor, _ANY_LINK, _ANY_LINK, self.client
-        )
-        return floor_contact(points, self.left_sole, before)
-
     def waist(self) -> WaistState:
         """Return where the waist is and how it moves."""
-        position, orientation = pybullet.getBasePositionAndOrientation(
-            self.robot, physicsClientId=self.client
+        x, y, z, vx, vy, vz = waist_state(
+            self.client, self.robot, self._torso_com_height_m
         )
-        velocity, spin = pybullet.getBaseVelocity(
-            self.robot, physicsClientId=self.client
-        )
-        # PyBullet speaks of the torso's CoM; the waist lies below it.
-        dx, dy, dz = pybullet.rotateVector(
-            orientation, (0.0, 0.0, -self._torso_com_height_m)
-        )
-        wx, wy, wz = spin
-        x, y, z = position
-        vx, vy, vz = velocity
-        # Plain numbers: numpy's cross product alone would take longer than all of this.
-        return WaistState(
-            (x + dx, y + dy, z + dz),
-            (
-                vx + (wy * dz - wz * dy),
-                vy + (wz * dx - wx * dz),
-                vz + (wx * dy - wy * dx),
-            ),
-        )
+        return WaistState((x, y, z), (vx, vy, vz))
 
     def torso_orientation(self) -> tuple[float, float, float, float]:
         """Return the torso's orientation, a quaternion (x, y, z, w)."""
-        _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(
-            self.robot, physicsClientId=self.client
-        )
+        base = np.empty(13)
+        read_base(self.client, self.robot, base)
+        x, y, z, w = base[3:7].tolist()
         return x, y, z, w
 
     # -- states --------------------------------------------------------------------
 
     def save(self) -> int:
         """Keep the present state in memory; return its handle."""
-        return int(pybullet.saveState(physicsClientId=self.client))
+        status = self._submit(api.b3SaveStateCommandInit(self.client))
+        handle: int = api.b3GetStatusGetStateId(status)
+        self._kept.add(handle)
+        return handle
 
     def load(self, handle: int) -> None:
         """Go back to a kept state, bit for bit."""
-        try:
-            with engine_chatter_dropped():
-                pybullet.restoreState(stateId=handle, physicsClientId=self.client)
-        except pybullet.error as error:
-            raise SnapshotError(f"state {handle} is not kept by this world") from error
+        if handle not in self._kept:
+            raise SnapshotError(f"state {handle} is not kept by this world")
+        command = api.b3LoadStateCommandInit(self.client)
+        api.b3LoadStateSetStateId(command, handle)
+        self._submit(command)
 
     def release(self, handle: int) -> None:
         """Forget a kept state."""
-        pybullet.removeState(handle, physicsClientId=self.client)
+        self._kept.discard(handle)
+        self._submit(api.b3InitRemoveStateCommand(self.client, handle))
 
     def close(self) -> None:
         """End the world; harmless when repeated."""
-        if self.client >= 0:
-            pybullet.disconnect(physicsClientId=self.client)
-            self.client = -1
+        if self.client:
+            api.b3DisconnectSharedMemory(self.client)
+            self.client = 0
 
     # -- set-up --------------------------------------------------------------------
 
+    def _submit(self, command: int) -> int:
+        """Have a command done; return its status."""
+        status: int = api.b3SubmitClientCommandAndWaitStatus(self.client, command)
+        return status
+
+    def _set_engine_parameters(self) -> None:
+        command = api.b3InitPhysicsParamCommand(self.client)
+        api.b3PhysicsParamSetTimeStep(command, CONTROL_PERIOD_S)
+        api.b3PhysicsParamSetNumSubSteps(command, 0)
+        api.b3PhysicsParameterSetConstraintSolverType(command, LCP_DANTZIG)
+        api.b3PhysicsParamSetDefaultGlobalCFM(command, 1e-6)
+        api.b3PhysicsParamSetDefaultNonContactERP(command, 0.2)
+        api.b3PhysicsParamSetDefaultContactERP(command, 0.2)
+        api.b3PhysicsParamSetDefaultFrictionERP(command, 0.2)
+        api.b3PhysicsParameterSetDeterministicOverlappingPairs(command, 1)
+        api.b3PhysicsParamSetGravity(command, 0.0, 0.0, -GRAVITY_M_S2)
+        self._submit(command)
+
     def _make_floor(self) -> int:
-        shape = pybullet.createCollisionShape(
-            pybullet.GEOM_PLANE, physicsClientId=self.client
-        )
-        floor: int = pybullet.createMultiBody(
-            baseMass=0.0, baseCollisionShapeIndex=shape, physicsClientId=self.client
-        )
-        self._change_dynamics(
-            floor,
-            _BASE_LINK,
-            lateralFriction=1.0,
-            rollingFriction=0.0,
-            spinningFriction=0.0,
-            restitution=0.0,
-        )
+        command = api.b3CreateCollisionShapeCommandInit(self.client)
+        api.b3CreateCollisionShapeAddPlane(command, _doubles((0.0, 0.0, 1.0)), 0.0)
+        shape = api.b3GetStatusCollisionShapeUniqueId(self._submit(command))
+        command = api.b3CreateMultiBodyCommandInit(self.client)
+        origin = _doubles((0.0, 0.0, 0.0)), _doubles((0.0, 0.0, 0.0, 1.0))
+        no_visual, no_mass = -1, 0.0
+        api.b3CreateMultiBodyBase(command, no_mass, shape, no_visual, *origin, *origin)
+        floor: int = api.b3GetStatusBodyIndex(self._submit(command))
+        self._take_away_losses(floor, _BASE_LINK)
+        self._set_friction(floor, _BASE_LINK, 1.0)
         return floor
 
     def _load_robot(self, robot: Robot) -> int:
-        # The engine reads files only.
+        # The API reads files only.
         with NamedTemporaryFile(mode="w", suffix=".urdf", encoding="utf-8") as file:
             file.write(robot.urdf)
             file.flush()
-            loaded: int = pybullet.loadURDF(
-                file.name,
-                basePosition=(0.0, 0.0, robot.settings.stretched_leg_length_m),
-                flags=pybullet.URDF_USE_INERTIA_FROM_FILE,
-                physicsClientId=self.client,
-            )
+            command = api.b3LoadUrdfCommandInit(self.client, file.name.encode())
+            api.b3LoadUrdfCommandSetFlags(command, USE_INERTIA_FROM_FILE)
+            height = robot.settings.stretched_leg_length_m
+            api.b3LoadUrdfCommandSetStartPosition(command, 0.0, 0.0, height)
+            loaded: int = api.b3GetStatusBodyIndex(self._submit(command))
         return loaded
 
-    def _numbers(self) -> dict[str, int]:
-        """Return the engine's number of each joint and of the link that it moves."""
-        count = pybullet.getNumJoints(self.robot, physicsClientId=self.client)
-        infos = (
-            pybullet.getJointInfo(self.robot, i, physicsClientId=self.client)
-            for i in range(count)
+    def _joint_info(self, joint: int) -> Any:
+        info = _JointInfo()
+        api.b3GetJointInfo(self.client, self.robot, joint, ctypes.addressof(info))
+        return info
+
+    def _dynamics(self, link: int) -> Array:
+        """Return mass and diagonal of the inertia of a link (4,)."""
+        command = api.b3GetDynamicsInfoCommandInit(self.client, self.robot, link)
+        info = np.zeros(64)  # more than b3DynamicsInfo, which begins with these four
+        api.b3GetDynamicsInfo(self._submit(command), info.ctypes.data)
+        return info[:4]
+
+    def _take_away_losses(self, body: int, link: int) -> None:
+        command = api.b3InitChangeDynamicsInfo(self.client)
+        api.b3ChangeDynamicsInfoSetLinearDamping(command, body, 0.0)
+        api.b3ChangeDynamicsInfoSetAngularDamping(command, body, 0.0)
+        for set_loss in (
+            api.b3ChangeDynamicsInfoSetJointDamping,
+            api.b3ChangeDynamicsInfoSetRollingFriction,
+            api.b3ChangeDynamicsInfoSetSpinningFriction,
+            api.b3ChangeDynamicsInfoSetRestitution,
+        ):
+            set_loss(command, body, link, 0.0)
+        self._submit(command)
+
+    def _set_friction(self, body: int, link: int, lateral: float) -> None:
+        command = api.b3InitChangeDynamicsInfo(self.client)
+        api.b3ChangeDynamicsInfoSetLateralFriction(command, body, link, lateral)
+        self._submit(command)
+
+    def _disable_default_motors(self) -> None:
+        """Take away the velocity motors that would brake every joint."""
+        command = api.b3JointControlCommandInit2(
+            self.client, self.robot, VELOCITY_CONTROL
         )
-        return {
-            info[name].decode(): info[0]
-            for info in infos
-            for name in (_JOINT_NAME, _LINK_NAME)
-        }
-
-    def _dynamics(self, link: int) -> Any:
-        return pybullet.getDynamicsInfo(self.robot, link, physicsClientId=self.client)
-
-    def _change_dynamics(self, body: int, link: int, **values: Any) -> None:
-        pybullet.changeDynamics(body, link, physicsClientId=self.client, **values)
+        for u_index in self.joint_numbers[U_INDEX].tolist():
+            api.b3JointControlSetDesiredVelocity(command, u_index, 0.0)
+            api.b3JointControlSetMaximumForce(command, u_index, 0.0)
+        self._submit(command)
 
 
-def floor_contact(points: Any, left_sole: int, before: FloorContact) -> FloorContact:
-    """Sum up contact points: ZMP = sum(f p) / sum(f) over pressing points.
-
-    Args:
-        points: PyBullet contact points with the robot as body A.
-        left_sole: link index of the left foot; the other contacts are the right's.
-        before: its ZMP is given again where no foot presses.
-    """
-    left = right = moment_x = moment_y = 0.0
-    nearest = 0.0
-    for point in points:
-        force = point[_NORMAL_FORCE]
-        if point[_DISTANCE] < nearest:
-            nearest = point[_DISTANCE]
-        if force > 0.0:
-            position = point[_POSITION_ON_B]
-            moment_x += force * position[0]
-            moment_y += force * position[1]
-            if point[_LINK_A] == left_sole:
-                left += force
-            else:
-                right += force
-    load = left + right
-    if load > 0.0:
-        return FloorContact(moment_x / load, moment_y / load, left, right, -nearest)
-    return FloorContact(before.zmp_x_m, before.zmp_y_m, 0.0, 0.0, -nearest)
+def _doubles(values: Sequence[float]) -> Any:
+    """Return numbers as a C array."""
+    return (ctypes.c_double * len(values))(*values)

@@ -1,9 +1,8 @@
-"""What an observation makes of the control ticks since the one before."""
+"""The control ticks since the last observation, and what the next one makes of them."""
 
 from __future__ import annotations
 
 import math
-import struct
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,14 +10,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from biped_common.timing import CONTROL_PERIOD_S
+from sim_node.physics import Array
 
 _N_JOINTS = 12
 # Columns of a row: positions, velocities and torques of the joints, their references,
 # the measured ZMP (2) and the norm of its error.
 _DQ, _TORQUE, _Q_REFERENCE, _DQ_REFERENCE = 12, 24, 36, 48
-_ZMP_ERROR, _COLUMNS = 62, 63
-packed_row = struct.Struct(f"{_COLUMNS}d").pack
-"""Packs the numbers of one control tick; beats every way of numpy for so few."""
+_ZMP, _ZMP_ERROR, _COLUMNS = 60, 62, 63
+_CAPACITY = 64  # to begin with
 
 
 class TickSums(NamedTuple):
@@ -33,32 +32,77 @@ class TickSums(NamedTuple):
     mean_joint_velocity_error_rad_s: float = 0.0
 
 
-def sum_up(rows: list[bytes], last_tick: int, trajectory: Any) -> TickSums:
-    """Sum up consecutive control ticks; none at all, or a NaN among them, gives zeros.
+class TickRows:
+    """What consecutive control ticks measured and were asked for, a row each."""
 
-    Args:
-        rows: control ticks of one walk, in order, as `packed_row` packs them.
-        last_tick: number of the last of them in its walk.
-        trajectory: hash (hashlib) that takes in all that was measured or asked for.
-    """
-    if not rows:
-        return TickSums()
-    packed = b"".join(rows)
-    trajectory.update(packed)
-    first_tick = last_tick - len(rows) + 1
-    sums = TickSums._make(_sums(np.frombuffer(packed), first_tick))
-    return sums if math.isfinite(sum(sums)) else TickSums()
+    def __init__(self) -> None:
+        """Start without a tick."""
+        self._numbers = np.zeros((_CAPACITY, _COLUMNS))
+        self._n = 0
+
+    def __len__(self) -> int:
+        return self._n
+
+    def clear(self) -> None:
+        """Forget all ticks."""
+        self._n = 0
+
+    def joints(self, ticks: int) -> Array:
+        """Return room for the joints' measurements of the next ticks.
+
+        Returns:
+            (ticks, 36) positions [rad], velocities [rad/s] and torques [N m].
+        """
+        end = self._n + ticks
+        if end > len(self._numbers):
+            grown = np.zeros((2 * end, _COLUMNS))
+            grown[: self._n] = self._numbers[: self._n]
+            self._numbers = grown
+        return self._numbers[self._n : end, :_Q_REFERENCE]
+
+    def add(
+        self,
+        q_reference: Array,
+        dq_reference: Array,
+        zmp: list[tuple[float, float, float]],
+    ) -> None:
+        """Add the ticks whose joints were measured, with what else there is of them.
+
+        Args:
+            q_reference: (ticks, 12) [rad].
+            dq_reference: (ticks, 12) [rad/s].
+            zmp: of each tick x, y and the norm of its error [m].
+        """
+        if zmp:
+            added = self._numbers[self._n : self._n + len(zmp)]
+            added[:, _Q_REFERENCE:_DQ_REFERENCE] = q_reference
+            added[:, _DQ_REFERENCE:_ZMP] = dq_reference
+            added[:, _ZMP:] = zmp
+            self._n += len(zmp)
+
+    def sum_up(self, last_tick: int, trajectory: Any) -> TickSums:
+        """Sum up all ticks; none at all, or a NaN among them, gives zeros.
+
+        Args:
+            last_tick: number of the last of them in its walk.
+            trajectory: hash (hashlib) that takes in all of their numbers.
+        """
+        if self._n == 0:
+            return TickSums()
+        rows = self._numbers[: self._n]
+        trajectory.update(rows)
+        sums = TickSums._make(_sums(rows, last_tick - self._n + 1))
+        return sums if math.isfinite(sum(sums)) else TickSums()
 
 
-@njit("UniTuple(float64, 7)(Array(float64, 1, 'C', readonly=True), int64)", cache=True)
-def _sums(numbers: NDArray[Any], first_tick: int) -> tuple[float, ...]:
+@njit("UniTuple(float64, 7)(float64[:, ::1], int64)", cache=True)
+def _sums(rows: NDArray[Any], first_tick: int) -> tuple[float, ...]:
     """Return the fields of `TickSums`, in order.
 
     Args:
-        numbers: those of n rows, one after the other.
+        rows: (n, columns) numbers.
         first_tick: number of the first control tick in its walk.
     """
-    rows = numbers.reshape((-1, _COLUMNS))
     n = len(rows)
     worst_zmp_error = worst_velocity = 0.0
     zmp_sum = q_sum = torque_sum = 0.0

@@ -1,10 +1,10 @@
 """Disturbances: what is drawn, and what the walk feels of it."""
 
 import numpy as np
-import pybullet
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.sim_node.bullet import LINKS, dynamics, link_com
 
 from sim_node.disturbance import draw_disturbance
 from sim_node.settings import DisturbanceSettings
@@ -151,9 +151,7 @@ def test_the_zmp_gives_way_in_the_direction_of_the_push(new_walker, static_walk)
 def slip_m(walker):
     """Return how far the left foot, which carries the first step, has slipped [m]."""
     world = walker.robot.world
-    position = pybullet.getLinkState(
-        world.robot, world.left_sole, physicsClientId=world.client
-    )[0]
+    position, _ = link_com(world, world.left_sole)
     return float(np.hypot(position[0] - 0.02, position[1] - 0.09))
 
 
@@ -182,10 +180,7 @@ def test_the_floor_carries_the_masses_drawn(new_walker, static_walk):
     walker = new_walker(STURDY, {"mass_error": 0.1})
     walker.walk(static_walk[:8])
     world = walker.robot.world
-    masses = [
-        pybullet.getDynamicsInfo(world.robot, link, physicsClientId=world.client)[0]
-        for link in range(-1, 12)
-    ]
+    masses = [dynamics(world, link)[0] for link in LINKS]
     assert walker.load_n[-1] == pytest.approx(9.81 * sum(masses), rel=1e-3)
 
 

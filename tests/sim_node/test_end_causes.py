@@ -4,10 +4,11 @@ import dataclasses
 
 import msgspec
 import numpy as np
-import pybullet
 import pytest
 from tests.robots import SHIPPED
+from tests.sim_node.bullet import put_base, put_joint, raise_robot, throw_base
 
+from biped_description.joints import KNEE
 from biped_description.robot import Robot
 from biped_description.settings import RobotSettings
 from msgs_json.end_cause import EndCause
@@ -19,7 +20,6 @@ from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
 
 SLOW = Robot(RobotSettings(velocity_limit_rad_s=0.3))
-UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
 def shift_waist(segment, offset, first_row=0):
@@ -27,20 +27,6 @@ def shift_waist(segment, offset, first_row=0):
     waist = segment.waist.copy()
     waist[first_row:] += offset
     return dataclasses.replace(segment, waist=waist)
-
-
-def raise_robot(walker, height_m):
-    """Lift the robot off the floor, or press it down."""
-    world = walker.robot.world
-    position, _ = pybullet.getBasePositionAndOrientation(
-        world.robot, physicsClientId=world.client
-    )
-    pybullet.resetBasePositionAndOrientation(
-        world.robot,
-        np.add(position, (0.0, 0.0, height_m)),
-        UPRIGHT,
-        physicsClientId=world.client,
-    )
 
 
 # -- limits ----------------------------------------------------------------------------
@@ -93,7 +79,7 @@ def test_a_saturation_that_eases_off_starts_anew(new_walker, shaky_walk):
 
 def test_a_robot_in_the_air_has_its_feet_unloaded(walker, static_walk):
     walker.walk(static_walk[:1])
-    raise_robot(walker, 0.5)
+    raise_robot(walker.robot.world, 0.5)
     assert walker.go_on(static_walk[1:])[-1].end_cause is EndCause.FEET_UNLOADED
 
 
@@ -103,14 +89,14 @@ def test_the_feet_must_be_unloaded_for_a_while(
 ):
     walker = new_walker({"unloaded_feet_s": lasting_s})
     walker.walk(static_walk[:1])
-    raise_robot(walker, 0.5)
+    raise_robot(walker.robot.world, 0.5)
     assert walker.go_on(static_walk[1:])[-1].control_tick == 10 + ticks
 
 
 def test_a_hop_shorter_than_that_is_forgiven(new_walker, static_walk):
     walker = new_walker({"unloaded_feet_s": 0.1, "zmp_error_m": 1.0})
     walker.walk(static_walk[:1])
-    raise_robot(walker, 0.002)  # 20 ms of free fall
+    raise_robot(walker.robot.world, 0.002)  # 20 ms of free fall
     walker.go_on(static_walk[1:15])
     unloaded_ticks = np.count_nonzero(walker.load_n == 0.0)
     assert (5 < unloaded_ticks < 50, len(walker.ticks)) == (True, 150)
@@ -120,7 +106,7 @@ def test_the_time_of_several_hops_does_not_add_up(new_walker, static_walk):
     walker = new_walker({"unloaded_feet_s": 0.05, "zmp_error_m": 1.0})
     walker.walk(static_walk[:1])
     for hop in range(4):
-        raise_robot(walker, 0.002)
+        raise_robot(walker.robot.world, 0.002)
         walker.go_on(static_walk[1 + 5 * hop : 6 + 5 * hop])
     unloaded_ticks = np.count_nonzero(walker.load_n == 0.0)
     assert (unloaded_ticks > 25, len(walker.ticks)) == (True, 210)
@@ -128,7 +114,7 @@ def test_the_time_of_several_hops_does_not_add_up(new_walker, static_walk):
 
 def test_a_robot_pressed_into_the_floor_is_a_fault(walker, static_walk):
     walker.walk(static_walk[:1])
-    raise_robot(walker, -0.02)
+    raise_robot(walker.robot.world, -0.02)
     assert walker.go_on(static_walk[1:])[-1].end_cause is EndCause.FOOT_THROUGH_FLOOR
 
 
@@ -143,17 +129,9 @@ def test_physics_that_is_no_number_ends_the_walk_at_once(walker, static_walk, wh
     world = walker.robot.world
     walker.walk(static_walk[:1])
     if what == "base":
-        pybullet.resetBaseVelocity(
-            world.robot, (np.nan, 0.0, 0.0), physicsClientId=world.client
-        )
+        throw_base(world, (np.nan, 0.0, 0.0))
     else:
-        pybullet.resetJointState(
-            world.robot,
-            world.joint_numbers[3],
-            0.9,
-            np.nan,
-            physicsClientId=world.client,
-        )
+        put_joint(world, KNEE, 0.9, np.nan)
     end = walker.go_on(static_walk[1:])[-1]
     assert (end.end_cause, end.control_tick) == (EndCause.PHYSICS_NAN, 11)
 
@@ -245,15 +223,12 @@ def test_the_cause_of_the_end_is_not_kept_for_the_next_walk(walker, static_walk)
 def spoil(walker, what):
     """Make the position or the velocity of base or joint no number."""
     world = walker.robot.world
-    client = {"physicsClientId": world.client}
     if what == "base_position":
-        bad = (np.nan, 0.0, 0.0)
-        pybullet.resetBasePositionAndOrientation(world.robot, bad, UPRIGHT, **client)
+        put_base(world, (np.nan, 0.0, 0.0))
     elif what == "base_velocity":
-        pybullet.resetBaseVelocity(world.robot, (np.nan, 0.0, 0.0), **client)
+        throw_base(world, (np.nan, 0.0, 0.0))
     else:
-        joint = world.joint_numbers[3]
-        pybullet.resetJointState(world.robot, joint, 0.9, np.nan, **client)
+        put_joint(world, KNEE, 0.9, np.nan)
 
 
 EVERY_SPOIL = pytest.mark.parametrize(
@@ -289,9 +264,9 @@ def test_an_observation_without_numbers_goes_over_the_wire(walker, static_walk, 
 @pytest.mark.parametrize(
     ("mishap", "cause"),
     [
-        (lambda walker: raise_robot(walker, 0.8), EndCause.FEET_UNLOADED),
-        (lambda walker: raise_robot(walker, -0.2), EndCause.FOOT_THROUGH_FLOOR),
-        (lambda walker: spoil(walker, "base_velocity"), EndCause.PHYSICS_NAN),
+        (lambda world: raise_robot(world, 0.8), EndCause.FEET_UNLOADED),
+        (lambda world: raise_robot(world, -0.2), EndCause.FOOT_THROUGH_FLOOR),
+        (lambda world: throw_base(world, (np.nan, 0.0, 0.0)), EndCause.PHYSICS_NAN),
     ],
 )
 def test_nothing_of_a_mishap_is_left_in_the_next_walk(
@@ -303,7 +278,7 @@ def test_nothing_of_a_mishap_is_left_in_the_next_walk(
     )
     unharmed.walk(shaky_walk[:100])
     harmed.walk(shaky_walk[:5])
-    mishap(harmed)
+    mishap(harmed.robot.world)
     assert harmed.go_on(shaky_walk[5:20])[-1].end_cause is cause
     harmed.forget()
     harmed.walk(shaky_walk[:100])

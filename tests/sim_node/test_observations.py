@@ -9,7 +9,7 @@ from tests.robots import SHIPPED
 
 from sim_node.biped import SimulatedBiped
 from sim_node.settings import SimSettings
-from sim_node.tick_sums import TickSums, packed_row, sum_up
+from sim_node.tick_sums import TickRows, TickSums
 
 DT = 0.002  # control tick [s]
 STRETCH = 230  # learning ticks, past two single supports
@@ -283,19 +283,36 @@ def test_a_short_segment_counts_its_own_ticks_only(sturdy_walker, shaky_walk):
     )
 
 
+def added(rows, numbers):
+    """Add (ticks, 63) numbers to the rows."""
+    rows.joints(len(numbers))[:] = numbers[:, :36]
+    zmp = [tuple(row) for row in numbers[:, 60:].tolist()]
+    rows.add(numbers[:, 36:48], numbers[:, 48:60], zmp)
+    return rows
+
+
 def test_no_control_tick_sums_up_to_nothing():
-    assert sum_up([], 7, hashlib.sha256()) == TickSums()
+    assert TickRows().sum_up(7, hashlib.sha256()) == TickSums()
 
 
 @pytest.mark.parametrize("column", range(63))
 def test_the_hash_takes_in_every_number(column):
-    numbers = np.zeros(63)
     hashes = []
     for value in (0.0, 1e-15):
-        numbers[column] = value
+        numbers = np.zeros((1, 63))
+        numbers[0, column] = value
         hashes.append(hashlib.sha256())
-        sum_up([packed_row(*numbers)], 1, hashes[-1])
+        added(TickRows(), numbers).sum_up(1, hashes[-1])
     assert hashes[0].digest() != hashes[1].digest()
+
+
+def test_more_ticks_than_there_was_room_for_are_kept():
+    numbers = np.random.default_rng(3).normal(size=(200, 63))
+    rows, trajectory = TickRows(), hashlib.sha256()
+    for part in np.split(numbers, 50):
+        added(rows, part)
+    rows.sum_up(200, trajectory)
+    assert trajectory.digest() == hashlib.sha256(numbers).digest()
 
 
 def test_an_undisturbed_walk_stays_clear_of_the_torque_limits(

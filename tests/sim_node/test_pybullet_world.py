@@ -1,10 +1,21 @@
 """PyBullet's worlds: side by side, their readings, and their end."""
 
 import numpy as np
-import pybullet
 import pytest
 from tests.robots import SHIPPED
+from tests.sim_node.bullet import (
+    FRICTION,
+    LINKS,
+    dynamics,
+    momentum,
+    put_base,
+    put_joint,
+    throw_base,
+)
+from tests.sim_node.plain_world import PlainWorld
 
+from sim_node.bullet_api import declared
+from sim_node.bullet_kernels import read_joints
 from sim_node.errors import SimulationError, SnapshotError, WorldClosedError
 from sim_node.pybullet_world import PyBulletWorld
 
@@ -18,9 +29,10 @@ def new_world(friction: float = 0.9, torque_share: float = 1.0) -> PyBulletWorld
 
 
 def step(world, q):
-    """Hold the joints at q for a control tick."""
-    world.command(q.tolist(), STANDING.tolist())
-    world.step()
+    """Hold the joints at q for a control tick; return what they measure (3, 12)."""
+    measured = np.empty(36)
+    world.step(q, STANDING, measured)
+    return measured.reshape(3, 12)
 
 
 @pytest.fixture
@@ -28,19 +40,6 @@ def world():
     world = new_world()
     yield world
     world.close()
-
-
-def momentum(world):
-    """Return the (3,) linear momentum of all links [kg m/s]."""
-    base, _ = pybullet.getBaseVelocity(world.robot, physicsClientId=world.client)
-    links = pybullet.getLinkStates(
-        world.robot,
-        list(range(12)),
-        computeLinkVelocity=True,
-        physicsClientId=world.client,
-    )
-    velocities = np.array([base, *(link[6] for link in links)])
-    return SHIPPED.link_masses_kg @ velocities
 
 
 # -- readings --------------------------------------------------------------------------
@@ -53,18 +52,14 @@ def test_the_waist_is_where_the_robot_was_placed(world):
 
 def test_the_waist_of_a_tilted_robot_is_below_its_torso(world):
     quarter_turn_about_x = (np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))
-    pybullet.resetBasePositionAndOrientation(
-        world.robot, (0.0, 0.0, 3.0), quarter_turn_about_x, physicsClientId=world.client
-    )
+    put_base(world, (0.0, 0.0, 3.0), quarter_turn_about_x)
     expected = [0.0, SHIPPED.settings.torso_com_height_m, 3.0]
     np.testing.assert_allclose(world.waist()[0], expected, rtol=0, atol=1e-8)
 
 
 def test_the_waist_of_a_spinning_robot_swings_about_its_torso(world):
     world.place(IN_THE_AIR, STANDING)
-    pybullet.resetBaseVelocity(
-        world.robot, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), physicsClientId=world.client
-    )
+    throw_base(world, (1.0, 0.0, 0.0), spin=(0.0, 2.0, 0.0))
     expected = [1.0 - 2.0 * SHIPPED.settings.torso_com_height_m, 0.0, 0.0]
     np.testing.assert_allclose(world.waist()[1], expected, rtol=0, atol=1e-7)
 
@@ -72,8 +67,9 @@ def test_the_waist_of_a_spinning_robot_swings_about_its_torso(world):
 def test_the_joints_are_where_they_were_placed(world):
     q = np.linspace(-0.3, 0.3, 12)
     world.place(IN_THE_AIR, q)
-    positions, _, _ = world.joints()
-    np.testing.assert_allclose(positions, q, rtol=0, atol=1e-12)
+    measured = np.empty(36)
+    read_joints(world.client, world.robot, world.joint_numbers, measured)
+    np.testing.assert_allclose(measured[:12], q, rtol=0, atol=1e-12)
 
 
 def test_a_placed_robot_is_at_rest(world):
@@ -103,19 +99,16 @@ def test_the_motors_hold_their_references_in_free_fall(world):
     q = np.linspace(0.1, 0.5, 12)
     world.place(IN_THE_AIR, q)
     for _ in range(100):
-        step(world, q)
-    positions, _, _ = world.joints()
+        positions, _, _ = step(world, q)
     np.testing.assert_allclose(positions, q, rtol=0, atol=1e-6)
 
 
 def test_without_torque_the_joints_are_free():
     world = new_world(torque_share=0.0)
     world.place(IN_THE_AIR, STANDING)
-    pybullet.resetJointState(
-        world.robot, world.joint_numbers[4], 0.0, 3.0, physicsClientId=world.client
-    )
-    step(world, STANDING)
-    assert world.joints()[1][4] == pytest.approx(3.0, abs=0.05)
+    put_joint(world, 4, 0.0, 3.0)
+    _, velocities, _ = step(world, STANDING)
+    assert velocities[4] == pytest.approx(3.0, abs=0.05)
     world.close()
 
 
@@ -126,9 +119,7 @@ def test_sliding_soles_are_braked_by_friction_times_weight():
     world.place(waist[0], q)
     for _ in range(150):
         step(world, q)
-    pybullet.resetBaseVelocity(
-        world.robot, (1.0, 0.0, 0.0), physicsClientId=world.client
-    )
+    throw_base(world, (1.0, 0.0, 0.0))
     for _ in range(100):
         step(world, q)
     speed = momentum(world)[0] / SHIPPED.mass_kg
@@ -137,18 +128,57 @@ def test_sliding_soles_are_braked_by_friction_times_weight():
 
 
 def test_mass_factors_scale_mass_and_inertia(world):
-    def dynamics():
-        infos = [
-            pybullet.getDynamicsInfo(world.robot, link, physicsClientId=world.client)
-            for link in range(-1, 12)
-        ]
-        return np.array([(info[0], *info[2]) for info in infos])
+    def mass_properties():
+        return np.array([dynamics(world, link)[:4] for link in LINKS])
 
-    nominal = dynamics()
+    nominal = mass_properties()
     factors = np.linspace(0.7, 1.3, 13)
     world.set_mass_factors(np.ones(13) * 2.0)
     world.set_mass_factors(factors)
-    np.testing.assert_allclose(dynamics(), factors[:, None] * nominal, rtol=1e-12)
+    expected = factors[:, None] * nominal
+    np.testing.assert_allclose(mass_properties(), expected, rtol=1e-12)
+
+
+# -- the same by PyBullet's Python functions -------------------------------------------
+
+
+def everything_measured(world, segments):
+    """Follow segments; return all that joints, floor and waist measure, by tick."""
+    measured = []
+    for segment in segments:
+        pose = segment.waist, segment.left_foot, segment.right_foot
+        motion = SHIPPED.leg_motion(*pose, 0.002)
+        for q, dq in zip(motion.q, motion.dq, strict=False):
+            joints = np.empty(36)
+            contact = world.step(q, dq, joints)
+            position, velocity = world.waist()
+            measured.append([*joints, *contact, *position, *velocity])
+    return measured
+
+
+def test_it_is_the_world_of_pybullets_python_functions_bit_for_bit(shaky_walk):
+    """Walk, be pushed, go back, and walk on with other masses, in both worlds."""
+    start, walked = shaky_walk[0], []
+    pose = start.waist[:1], start.left_foot[:1], start.right_foot[:1]
+    for kind in (PyBulletWorld, PlainWorld):
+        world = kind(SHIPPED, 0.7, 0.9 * SHIPPED.torque_limit_nm)
+        world.place(start.waist[0], SHIPPED.leg_joint_positions(*pose)[0])
+        measured = everything_measured(world, shaky_walk[:50])
+        handle = world.save()
+        world.push((20.0, -10.0, 0.0))
+        measured += everything_measured(world, shaky_walk[50:80])
+        world.load(handle)
+        world.release(handle)
+        world.set_mass_factors(np.linspace(0.9, 1.1, 13))
+        measured += everything_measured(world, shaky_walk[50:80])
+        world.close()
+        walked.append(measured)
+    np.testing.assert_array_equal(*walked)
+
+
+def test_a_library_without_the_api_is_refused_by_the_name_of_what_it_lacks():
+    with pytest.raises(ImportError, match=r"libc\.so.* does not export b3Connect"):
+        declared("libc.so.6")
 
 
 # -- states ----------------------------------------------------------------------------
@@ -190,12 +220,7 @@ def test_a_new_world_does_not_disturb_a_walk_under_way(new_walker, shaky_walk):
 
 def test_the_friction_of_one_world_is_not_that_of_another():
     slippery, rough = new_world(friction=0.1), new_world(friction=0.8)
-    frictions = [
-        pybullet.getDynamicsInfo(
-            each.robot, each.left_sole, physicsClientId=each.client
-        )[1]
-        for each in (slippery, rough)
-    ]
+    frictions = [dynamics(each, each.left_sole)[FRICTION] for each in (slippery, rough)]
     slippery.close()
     rough.close()
     assert frictions == [0.1, 0.8]
@@ -207,7 +232,7 @@ def test_the_friction_of_one_world_is_not_that_of_another():
 def test_a_world_can_be_closed_twice(world):
     world.close()
     world.close()
-    assert world.client < 0
+    assert not world.client
 
 
 @pytest.mark.parametrize("call", ["begin_walk", "snapshot", "restore", "release"])
