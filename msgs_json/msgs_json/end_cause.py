@@ -11,9 +11,9 @@ class EndCause(str, Enum):
     The first is success. The next two are the penalties of Table 1. The `ik_` and
     `torque_` ones are the further failures that Section 4 names. `foot_through_floor`
     and `physics_nan` mean that the physics itself can no longer be trusted. The last
-    three come from outside: in real time, the walk failed after a deadline had been
+    four come from outside: in real time, the walk failed after a deadline had been
     missed, so that nobody knows what it would have been; who guides the robot fell
-    silent; or a user asked for it.
+    silent; a user asked for it; or a stranger published what only one node may.
     """
 
     COMPLETED = "completed"
@@ -28,6 +28,7 @@ class EndCause(str, Enum):
     LATE = "late"
     PEER_SILENT = "peer_silent"
     RESET = "reset"
+    DISTURBED = "disturbed"
 
     def __str__(self) -> str:
         """Return the word itself."""
