@@ -20,6 +20,7 @@ def test_these_are_all_the_words():
         "late",
         "peer_silent",
         "reset",
+        "disturbed",
     ]
 
 
