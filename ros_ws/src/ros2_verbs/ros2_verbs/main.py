@@ -20,6 +20,7 @@ from typing import Any
 from biped_common.command_line import INTERRUPTED
 from biped_common.errors import BipedError
 from biped_common.signals import loading
+from biped_common.terminal_text import printable_output
 from biped_common.verbs import docstring_of, use_verbs
 from ros2_verbs import real_ros2
 from ros2_verbs.environment import prepare_environment
@@ -61,6 +62,11 @@ def run(args: argparse.Namespace) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # Whoever reads a pipe sees each message when it comes.
         sys.stdout.reconfigure(line_buffering=True)
+    with printable_output():
+        return _status_of(args)
+
+
+def _status_of(args: argparse.Namespace) -> int:
     try:
         status: int = args.run(args)
         sys.stdout.flush()

@@ -44,6 +44,7 @@ from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.layout import fresh_folder
 from biped_bag.storage.writer import BagWriter
 from biped_common.settings import SettingsError, from_json
+from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
 from biped_ros.running import run_node
 from msgs_json import topics
@@ -118,7 +119,7 @@ class RecorderNode(GuardedNode):
             recording.close({STATE_KEY: state, LOST_KEY: str(lost)})
             bag = recording.writer
             for line in counts_table(counts_of(incoming, bag), bag.folder):
-                self.get_logger().info(line)
+                self.get_logger().info(printable(line))
         self._listener.destroy_node()
         if self._error:
             # The last word: the supervisor tells it on.
@@ -202,7 +203,7 @@ class RecorderNode(GuardedNode):
             self._recording.do(lambda bag: bag.add_topic(topic))
 
     def _warn(self, text: str) -> None:
-        self.get_logger().warning(text)
+        self.get_logger().warning(printable(text))
         self.remark(DiagnosticStatus.WARN, text, text)
 
     def _stop_recording(self, reason: str) -> None:

@@ -8,6 +8,7 @@ import sys
 
 from rclpy.node import Node
 
+from biped_common.terminal_text import printable
 from ros2_verbs.errors import VerbError
 from ros2_verbs.graph.names import node_names
 from ros2_verbs.graph.session import discover, graph_node, settled
@@ -52,7 +53,7 @@ def main(args: argparse.Namespace) -> int:
     """
     with graph_node(args) as node:
         if args.node_name:
-            print(*_lines(args, connect(node, args)), sep="\n")
+            print(*map(printable, _lines(args, connect(node, args))), sep="\n")
             return 0
         discover(args, settled(node))
         status = 0
@@ -63,7 +64,7 @@ def main(args: argparse.Namespace) -> int:
                 print(error, file=sys.stderr)
                 status = 1
             else:
-                print(f"{name}:", *lines, sep="\n")
+                print(*map(printable, [f"{name}:", *lines]), sep="\n")
     return status
 
 

@@ -113,7 +113,8 @@ def main(args: argparse.Namespace) -> int:
     """Print messages until interrupted, or as the options say.
 
     Raises:
-        VerbError: the options or the topic's type are wrong, or it is not there.
+        VerbError: the options or the topic's type are wrong, it is not there, or the
+            one message that was asked for has not come in time.
     """
     echo = _Echo(args)
     with graph_node(args) as node:
@@ -138,7 +139,9 @@ def main(args: argparse.Namespace) -> int:
         )
         # The events executor cannot pass the info on.
         executor = SingleThreadedExecutor() if with_info else None
-        spin(node, echo.finished, args.timeout or math.inf, executor)
+        came = spin(node, echo.finished, args.timeout or math.inf, executor)
+    if args.once and not came:
+        raise VerbError(f"{args.topic_name}: no message came in {args.timeout:g} s")
     return 0
 
 
