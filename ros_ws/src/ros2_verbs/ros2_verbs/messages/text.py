@@ -60,7 +60,11 @@ def to_plain(
 
 def to_yaml(message: Any, shown: Shown = EVERYTHING, flow_style: bool = False) -> str:
     """Return a message as YAML, with a line's end."""
-    plain = to_plain(message, shown)
+    return plain_to_yaml(to_plain(message, shown), flow_style)
+
+
+def plain_to_yaml(plain: dict[str, Any], flow_style: bool = False) -> str:
+    """Return what `to_plain` returned, perhaps changed, as YAML."""
     text = _dump(plain, yaml.CSafeDumper, flow_style)
     if "\\" in text:
         # libyaml is twenty times as quick, but escapes what is beyond 16 bits.
