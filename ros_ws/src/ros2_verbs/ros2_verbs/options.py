@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -48,6 +49,14 @@ def completed(action: argparse.Action, completer: Callable[..., Sequence[str]]) 
 
     # argcomplete looks for this attribute, which argparse does not declare.
     action.completer = fit  # type: ignore[attr-defined]
+
+
+def regular_expression(text: str) -> re.Pattern[str]:
+    """Compile a regular expression."""
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f"{text}: {error}") from None
 
 
 def positive_int(text: str) -> int:

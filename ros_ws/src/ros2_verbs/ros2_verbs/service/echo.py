@@ -7,6 +7,7 @@ once its introspection is switched on.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from typing import Any
 
 from rclpy.task import Future
@@ -37,7 +38,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the verb."""
     add_graph_arguments(parser)
     SERVICES.add_name_argument(parser)
-    SERVICES.add_hidden_argument(parser)
     completed(
         parser.add_argument(
             "service_type", nargs="?", help="its type, e.g. std_srvs/srv/SetBool"
@@ -70,26 +70,29 @@ def main(args: argparse.Namespace) -> int:
 
     topic = f"{args.service_name}{_EVENTS}"
     with graph_node(args) as node:
-        there = discover(args, lambda: bool(topic_types(node, topic)), at_once=True)
-        name = args.service_type or _type_of_service(node, args)
-        finished: Future = Future()
-        node.create_subscription(
-            interface_class(name, "srv").Event,
-            topic,
-            caught(finished, show),
-            listening_profile(node, topic, args),
-        )
-        if not there:
+
+        def introspected() -> bool:
+            return bool(topic_types(node, topic))
+
+        def types() -> Sequence[str]:
+            known = dict(SERVICES.known(node, hidden=True))
+            given = args.service_type
+            return [given] if given else known.get(args.service_name, [])
+
+        discover(args, lambda: introspected() and bool(types()), at_once=True)
+        if len(types()) != 1:
+            raise VerbError("Could not load the type for the passed service")
+        if not introspected():
             print(
                 f"No publishers on topic '{topic}'; is service introspection on the "
                 "client or server enabled?"
             )
+        finished: Future = Future()
+        node.create_subscription(
+            interface_class(types()[0], "srv").Event,
+            topic,
+            caught(finished, show),
+            listening_profile(node, topic, args),
+        )
         spin(node, finished)
     return 0
-
-
-def _type_of_service(node: Any, args: argparse.Namespace) -> str:
-    types = SERVICES.await_types(node, args.service_name, args)
-    if len(types) != 1:
-        raise VerbError("Could not load the type for the passed service")
-    return types[0]
