@@ -337,6 +337,15 @@ def test_a_doctor_finds_the_twins(settled):
     assert "/9 checks failed\n\nFailed modules: " in out
 
 
+def test_a_greeting_goes_over_ros_and_over_multicast(ros2):
+    status, out, err = ros2("doctor", "hello", "--once")
+    if err.startswith("multicast"):
+        pytest.skip(f"this machine has no {err.strip()}")
+    assert (status, err) == (0, "")
+    assert "Topic: /canyouhearme, Published Msg Count: 1\n" in out
+    assert "Multicast Group/Port: 225.0.0.1/49150, Sent Msg Count: 1\n" in out
+
+
 def test_as_a_process_a_verb_ends_with_its_status(ros2):
     done = subprocess.run(
         [*COMMAND, "param", "get", "/turtlesim", "background_b"],
