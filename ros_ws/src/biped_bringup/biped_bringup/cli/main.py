@@ -16,6 +16,7 @@ import argcomplete
 from biped_common.command_line import INTERRUPTED, WRONG_INPUT, CommandError
 from biped_common.errors import BipedError
 from biped_common.signals import loading
+from biped_common.terminal_text import printable
 from biped_common.verbs import add_verbs
 
 
@@ -47,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         status: int = options.run(options)
         sys.stdout.flush()
     except BipedError as error:
-        print(f"biped {options.verb}: {error}", file=sys.stderr)
+        print(f"biped {options.verb}: {printable(str(error))}", file=sys.stderr)
         return WRONG_INPUT
     except BrokenPipeError:
         # Whoever read the output has seen enough; Python must not flush it again.
