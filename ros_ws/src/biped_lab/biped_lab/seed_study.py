@@ -4,7 +4,8 @@
 
 What follows `--` goes to `biped learn`. Each seed is a process of its own; its figures
 are appended to `runs.jsonl` in the folder, and a seed that stands there already is not
-run again, so an interrupted study goes on where it stopped.
+run again, so an interrupted study goes on where it stopped. A folder holds one study:
+runs with other settings or another end are not taken for its own, but refused.
 """
 
 from __future__ import annotations
@@ -15,18 +16,77 @@ import statistics
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from biped_bringup.cli.main import parser as biped_parser
+from biped_bringup.cli.options import settings_of
+from biped_bringup.run_settings import RunSettings, changes_in_words
+from biped_common.command_line import WRONG_INPUT, CommandError, writable_folder
+from biped_common.errors import BipedError
+from biped_common.settings import from_mapping, to_mapping
 
 RUNS_FILE = "runs.jsonl"
 
 
+@dataclass(frozen=True)
+class Study:
+    """What all runs of a study have in common."""
+
+    settings: RunSettings
+    end: dict[str, Any]
+    """The options of `biped learn` that end a run."""
+
+    @classmethod
+    def of(cls, learn_options: list[str]) -> Study:
+        """Return the study that options of `biped learn` describe.
+
+        Raises:
+            SettingsError: a setting is wrong.
+        """
+        words = ["learn", *learn_options]
+        options = biped_parser(words).parse_args(words)
+        return cls(
+            settings_of(options),
+            {
+                "episodes": options.episodes,
+                "stop_at_schedule": options.stop_at_schedule,
+            },
+        )
+
+    def check(self, run: dict[str, Any]) -> None:
+        """Refuse a run that is not of this study.
+
+        Raises:
+            CommandError: it has other settings or another end, or does not say.
+        """
+        if "settings" not in run or "end" not in run:
+            raise CommandError(f"seed {run['seed']}: does not say its settings")
+        theirs = from_mapping(RunSettings, run["settings"])
+        if theirs != self.settings:
+            changes = changes_in_words(theirs, self.settings)
+            raise CommandError(f"seed {run['seed']}: has other settings: {changes}")
+        if run["end"] != self.end:
+            raise CommandError(
+                f"seed {run['seed']}: has another end: {run['end']} -> {self.end}"
+            )
+
+
 def main() -> int:
-    """Run the study; exit status 1 if a run could not be carried out."""
+    """Run the study; exit status 1 if a run could not be carried out, 2 if refused."""
     options = _parser().parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
     runs_file = options.out / RUNS_FILE
     done = read_runs(runs_file)
+    try:
+        study = Study.of(options.learn)
+        for run in done:
+            study.check(run)
+        writable_folder(options.out)
+    except BipedError as error:
+        where = f"{runs_file}: " if done else ""
+        print(f"{where}{error}; take another --out", file=sys.stderr)
+        return WRONG_INPUT
     missing = [seed for seed in options.seeds if seed not in {r["seed"] for r in done}]
     failed = False
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -37,6 +97,7 @@ def main() -> int:
                 print(f"seed {run['seed']}: {run['error']}", file=sys.stderr)
                 failed = True
                 continue
+            run["end"] = study.end
             with runs_file.open("a") as file:
                 file.write(json.dumps(run) + "\n")
             print(_row(run), flush=True)
