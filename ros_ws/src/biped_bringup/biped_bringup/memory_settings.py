@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from biped_bringup.run_settings import RunSettings, changed_settings, differences
-from biped_common.settings import SettingsError
+from biped_common.settings import SettingsError, to_mapping
 
 _WALKING = ("sim",)
 _LEARNING = ("sim", "learner.schedule")
@@ -50,7 +50,8 @@ def with_changes(
     """
     settings = changed_settings(memory, file, changes)
     free = _LEARNING if learns else _WALKING
-    for key, (own, other) in differences(memory, settings).items():
+    changed = differences(to_mapping(memory), to_mapping(settings))
+    for key, (own, other) in changed.items():
         if not any(_within(key, section) for section in free):
             reason = next(_MADE_BY[name] for name in _MADE_BY if _within(key, name))
             raise SettingsError(

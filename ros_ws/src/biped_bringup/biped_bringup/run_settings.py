@@ -86,15 +86,19 @@ def changed_settings(
     return _laid_over(to_mapping(settings), file, changes)
 
 
-def differences(one: RunSettings, other: RunSettings) -> dict[str, tuple[Any, Any]]:
+def differences(
+    one: Mapping[str, Any], other: Mapping[str, Any]
+) -> dict[str, tuple[Any, Any]]:
     """Return both values of each setting in which two runs differ, by dotted key."""
-    before, after = dotted(to_mapping(one)), dotted(to_mapping(other))
+    before, after = dotted(one), dotted(other)
     return {
-        key: (value, after[key]) for key, value in before.items() if value != after[key]
+        key: (before.get(key), after.get(key))
+        for key in before | after
+        if before.get(key) != after.get(key)
     }
 
 
-def changes_in_words(one: RunSettings, other: RunSettings) -> str:
+def changes_in_words(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
     """Return the differences as people read them, such as `gait.steps 5 -> 2`."""
     return ", ".join(
         f"{key} {old} -> {new}" for key, (old, new) in differences(one, other).items()

@@ -226,7 +226,9 @@ class TrainingRun:
         run.walker.ticks = replace(self.walker.ticks)
         run.cpu_s = self.cpu_s
         run.written_by = self.written_by
-        run.setting_changes = changes_in_words(self.settings, settings)
+        run.setting_changes = changes_in_words(
+            to_mapping(self.settings), to_mapping(settings)
+        )
         return run
 
     def summary(self, memory_file: Path) -> dict[str, Any]:

@@ -16,76 +16,36 @@ import statistics
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from biped_bringup.cli.main import parser as biped_parser
 from biped_bringup.cli.options import settings_of
-from biped_bringup.run_settings import RunSettings, changes_in_words
-from biped_common.command_line import WRONG_INPUT, CommandError, writable_folder
+from biped_bringup.run_settings import changes_in_words
+from biped_common.command_line import (
+    WRONG_INPUT,
+    CommandError,
+    CommandParser,
+    positive,
+    writable_folder,
+)
 from biped_common.errors import BipedError
-from biped_common.settings import from_mapping, to_mapping
+from biped_common.settings import to_mapping
 
 RUNS_FILE = "runs.jsonl"
-
-
-@dataclass(frozen=True)
-class Study:
-    """What all runs of a study have in common."""
-
-    settings: RunSettings
-    end: dict[str, Any]
-    """The options of `biped learn` that end a run."""
-
-    @classmethod
-    def of(cls, learn_options: list[str]) -> Study:
-        """Return the study that options of `biped learn` describe.
-
-        Raises:
-            SettingsError: a setting is wrong.
-        """
-        words = ["learn", *learn_options]
-        options = biped_parser(words).parse_args(words)
-        return cls(
-            settings_of(options),
-            {
-                "episodes": options.episodes,
-                "stop_at_schedule": options.stop_at_schedule,
-            },
-        )
-
-    def check(self, run: dict[str, Any]) -> None:
-        """Refuse a run that is not of this study.
-
-        Raises:
-            CommandError: it has other settings or another end, or does not say.
-        """
-        if "settings" not in run or "end" not in run:
-            raise CommandError(f"seed {run['seed']}: does not say its settings")
-        theirs = from_mapping(RunSettings, run["settings"])
-        if theirs != self.settings:
-            changes = changes_in_words(theirs, self.settings)
-            raise CommandError(f"seed {run['seed']}: has other settings: {changes}")
-        if run["end"] != self.end:
-            raise CommandError(
-                f"seed {run['seed']}: has another end: {run['end']} -> {self.end}"
-            )
 
 
 def main() -> int:
     """Run the study; exit status 1 if a run could not be carried out, 2 if refused."""
     options = _parser().parse_args()
     runs_file = options.out / RUNS_FILE
-    done = read_runs(runs_file)
     try:
-        study = Study.of(options.learn)
-        for run in done:
-            study.check(run)
+        study = study_of(options.learn)
+        done = read_runs(runs_file)
+        check_runs(done, study, runs_file)
         writable_folder(options.out)
     except BipedError as error:
-        where = f"{runs_file}: " if done else ""
-        print(f"{where}{error}; take another --out", file=sys.stderr)
+        print(error, file=sys.stderr)
         return WRONG_INPUT
     missing = [seed for seed in options.seeds if seed not in {r["seed"] for r in done}]
     failed = False
@@ -97,12 +57,47 @@ def main() -> int:
                 print(f"seed {run['seed']}: {run['error']}", file=sys.stderr)
                 failed = True
                 continue
-            run["end"] = study.end
+            run["end"] = study["end"]
             with runs_file.open("a") as file:
                 file.write(json.dumps(run) + "\n")
             print(_row(run), flush=True)
     print(summary([r for r in read_runs(runs_file) if r["seed"] in options.seeds]))
     return 1 if failed else 0
+
+
+def study_of(learn_options: list[str]) -> dict[str, Any]:
+    """Return what all runs of a study have in common: `settings`, and when they `end`.
+
+    Raises:
+        SettingsError: the options of `biped learn` hold a wrong setting.
+    """
+    words = ["learn", *learn_options]
+    options = biped_parser(words).parse_args(words)
+    return {
+        "settings": to_mapping(settings_of(options)),
+        "end": {
+            "episodes": options.episodes,
+            "stop_at_schedule": options.stop_at_schedule,
+        },
+    }
+
+
+def check_runs(runs: list[dict[str, Any]], study: dict[str, Any], file: Path) -> None:
+    """Refuse runs that are not of this study.
+
+    Raises:
+        CommandError: one has other settings or another end, or does not say.
+    """
+    for run in runs:
+        if not study.keys() <= run.keys():
+            what = "does not say its settings"
+        else:
+            what = changes_in_words({key: run[key] for key in study}, study)
+        if what:
+            raise CommandError(
+                f"{file}: seed {run['seed']} is of another study, {what}; take another "
+                "--out"
+            )
 
 
 def run_seed(seed: int, out: Path, learn_options: list[str]) -> dict[str, Any]:
@@ -191,12 +186,12 @@ def _seeds(text: str) -> list[int]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = CommandParser(
         prog="python -m biped_lab.seed_study", description=__doc__.splitlines()[0]
     )
     parser.add_argument("--seeds", type=_seeds, required=True, metavar="FIRST-LAST")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser.add_argument("--jobs", type=positive, default=2, help="runs at a time")
     parser.add_argument(
         "learn", nargs="*", metavar="-- LEARN_OPTION", help="for `biped learn`"
     )

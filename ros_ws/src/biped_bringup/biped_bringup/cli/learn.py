@@ -27,6 +27,7 @@ from biped_common.command_line import (
     NOT_ACHIEVED,
     CommandError,
     add_json_option,
+    duration_s,
     natural,
     positive,
     print_json,
@@ -83,7 +84,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     )
     parser.add_argument(
         "--checkpoint-every",
-        type=float,
+        type=duration_s,
         default=20.0,
         metavar="S",
         help="seconds of real time between saves (default 20)",
