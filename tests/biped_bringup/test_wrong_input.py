@@ -54,6 +54,11 @@ REFUSED = {
     "learn --resume out/memory.npz --set gait.steps=2": r"gait\.steps = 2: must stay 1",
     "learn --resume out/memory.npz --config a.yaml": r"a\.yaml'.*cannot be read",
     "learn --resume out/memory.npz --fresh": r"--fresh: learns anew",
+    "up --resume --out out --set gait.steps=2": r"gait\.steps = 2: must stay 1",
+    "up --greedy --out out --set gait.steps=2": r"gait\.steps = 2: must stay 1",
+    "up --greedy --out out --preset quick": r"--preset quick: .* its own settings",
+    "up --resume --out out --seed 1": r"--seed 1: a memory brings its own seed",
+    "up --resume --fresh --out out": r"--fresh: cannot be given with --greedy or --res",
     "learn --resume out/memory.npz --out a_file": r"a_file: must be a folder",
 }
 # argparse answers these itself.
