@@ -46,8 +46,10 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "--memory", type=Path, metavar="FILE", help="what `biped learn` wrote"
     )
     source.add_argument(
-        "--static", action="store_true", help="the static walk, without correction; at the "
-        "default difficulty it leaves its ZMP limit, and does not fall",
+        "--static",
+        action="store_true",
+        help="the static walk, without correction; at the default difficulty it leaves "
+        "its ZMP limit, and does not fall",
     )
     parser.add_argument(
         "--tds",
