@@ -123,7 +123,7 @@ def test_wrong_input_is_refused_in_one_line(bags, tmp_path, line, status, text):
 def test_it_is_not_understood(bags, line):
     outcome = bags("bag", *line.split())
     assert (outcome.status, outcome.out) == (2, "")
-    assert outcome.err.startswith("usage: biped bag")
+    assert outcome.err.startswith("biped bag")
 
 
 def test_info_tells_scripts_the_same(bags):
