@@ -17,6 +17,7 @@ from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import SegmentReader
 from biped_ros.running import run_node
+from biped_ros.sole_publisher import Publishers
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
@@ -61,6 +62,9 @@ class SimNode(GuardedNode):
         self._loop: RealtimeLoop | None = None
         self._paused = False
         self._held: bytes | None = None
+        self._offered = False
+        """The present walk was begun, and no other is to be begun before its end."""
+        self._ownership = Publishers(self)
         self._heard = time.monotonic()
         self._punctuality = Punctuality()
         self._observed_ns = time.monotonic_ns()
@@ -178,6 +182,12 @@ class SimNode(GuardedNode):
         self._begin()
 
     def _begin(self) -> None:
+        """Begin the next walk, unless somebody would not follow it from its start."""
+        if self._disturbed() or not self._connected():
+            self._offered = False  # until `_watch_peers` finds all in order
+            return
+        self._offered = True
+        self._heard = time.monotonic()
         if self._loop is not None:
             self._loop.request(self._loop.begin)
         elif self._pilot is not None:
@@ -201,16 +211,19 @@ class SimNode(GuardedNode):
     def _watch_peers(self) -> None:
         if self._pilot is None or self._paused:
             return
-        if self._pilot.walks == 0:
-            # What is published before all are connected would be lost.
-            if self._connected():
-                self._begin()
+        if self._disturbed():
+            self._end(EndCause.DISTURBED)
+            self._offered = False
+            self._heard = time.monotonic()  # nobody may answer now
             return
+        if not self._offered:
+            self._begin()
         silent_s = time.monotonic() - self._heard
         if silent_s < self._settings.timeout_s:
             return
         peer = self._silent_peer()
-        text = f"{peer} has been silent for {silent_s:.1f} s; the walk is given up"
+        what = "the walk is given up" if self._offered else "no walk can begin"
+        text = f"{peer} has been silent for {silent_s:.1f} s; {what}"
         self.get_logger().error(text)
         self.remark(DiagnosticStatus.ERROR, "silent peer", text)
         # A walk cut short is reported first; if nobody reacts, a new one is offered.
@@ -218,18 +231,30 @@ class SimNode(GuardedNode):
         if not self._end(EndCause.PEER_SILENT):
             self._begin()
 
+    def _disturbed(self) -> bool:
+        """Return whether a stranger publishes on any control topic."""
+        found = False
+        for topic in topics.CONTROL:
+            text = self._ownership.strangers(topic)
+            self.stranger(topic, text)
+            found = found or text is not None
+        return found
+
     def _connected(self) -> bool:
-        waited_s = time.monotonic() - self._heard
-        recorders = (
-            self._settings.recorders if waited_s < self._settings.timeout_s else 0
-        )
-        if self._ticks.listeners() < recorders:
-            return False
-        # They listen once their own answers get through.
+        """Return whether all who follow a walk will hear of its beginning."""
+        # Learner and trajectory listen once their own answers get through.
         peers = (topics.LEARNER_NODE, topics.TRAJECTORY_NODE)
+        if not self.reaches(self._observations, *peers):
+            return False
+        first = self._pilot is not None and self._pilot.walks == 0
+        waited_s = time.monotonic() - self._heard
+        if not first or waited_s >= self._settings.timeout_s:
+            return True
+        # What is published before a recorder is there would be lost.
+        recorders = self._settings.recorders
         listeners = self._observations.get_subscription_count()
-        return listeners >= len(peers) + recorders and self.reaches(
-            self._observations, *peers
+        return (
+            self._ticks.listeners() >= recorders and listeners >= len(peers) + recorders
         )
 
     def _silent_peer(self) -> str:

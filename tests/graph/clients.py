@@ -7,7 +7,7 @@ import rclpy
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.training import TrainingRun
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from biped_ros.qos import qos_profile
 
 SEED = 5

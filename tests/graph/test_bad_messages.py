@@ -15,8 +15,7 @@ from tests.robots import SHIPPED
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.one_executor import OneExecutor
 from biped_bringup.run_settings import load_settings
-from biped_ros.guarded import message_type
-from biped_ros.messages import segment_template, segment_values
+from biped_ros.messages import message_type, segment_template, segment_values
 from biped_ros.qos import qos_profile
 from msgs_json import topics
 from trajectory_node.waist_reference import WaistReference

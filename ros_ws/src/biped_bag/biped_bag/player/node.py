@@ -25,7 +25,7 @@ from std_srvs.srv import Trigger
 from biped_bag.player.player import Player
 from biped_bag.qos import playing_qos
 from biped_bag.storage.contents import BagMessage, BagTopic
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from msgs_json.topics import Topic
 
 NAME = "player"
