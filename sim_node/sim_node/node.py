@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 import uuid
@@ -37,6 +38,8 @@ from sim_node.tick_publisher import TickPublisher
 
 NAME = topics.SIM_NODE
 _WATCH_PERIOD_S = 0.1
+# After a stranger has left, until all have found each other again.
+_CALM_S = 0.5
 
 
 class SimNode(GuardedNode):
@@ -65,6 +68,7 @@ class SimNode(GuardedNode):
         self._offered = False
         """The present walk was begun, and no other is to be begun before its end."""
         self._ownership = Publishers(self)
+        self._disturbed_at = -math.inf
         self._heard = time.monotonic()
         self._punctuality = Punctuality()
         self._observed_ns = time.monotonic_ns()
@@ -183,7 +187,8 @@ class SimNode(GuardedNode):
 
     def _begin(self) -> None:
         """Begin the next walk, unless somebody would not follow it from its start."""
-        if self._disturbed() or not self._connected():
+        calm_s = time.monotonic() - self._disturbed_at
+        if self._disturbed() or calm_s < _CALM_S or not self._connected():
             self._offered = False  # until `_watch_peers` finds all in order
             return
         self._offered = True
@@ -214,7 +219,7 @@ class SimNode(GuardedNode):
         if self._disturbed():
             self._end(EndCause.DISTURBED)
             self._offered = False
-            self._heard = time.monotonic()  # nobody may answer now
+            self._heard = self._disturbed_at = time.monotonic()
             return
         if not self._offered:
             self._begin()
@@ -246,6 +251,15 @@ class SimNode(GuardedNode):
         peers = (topics.LEARNER_NODE, topics.TRAJECTORY_NODE)
         if not self.reaches(self._observations, *peers):
             return False
+        # They may have stopped to listen to each other, for a stranger.
+        for topic, listener in (
+            (topics.CORRECTION, topics.TRAJECTORY_NODE),
+            (topics.WAIST_REFERENCE, NAME),
+            (topics.EPISODE, NAME),
+        ):
+            listening = self.get_subscriptions_info_by_topic(topic.name)
+            if listener not in {info.node_name for info in listening}:
+                return False
         first = self._pilot is not None and self._pilot.walks == 0
         waited_s = time.monotonic() - self._heard
         if not first or waited_s >= self._settings.timeout_s:

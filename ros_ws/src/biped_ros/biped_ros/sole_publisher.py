@@ -26,6 +26,7 @@ _LOOK_PERIOD_S = 0.05
 _PUBLISHED_BY_EVERY_NODE = "/parameter_events"
 # The graph learns of a publisher first, and of the node that made it soon after.
 _NOT_KNOWN_YET = "_NODE_NAME_UNKNOWN_"
+_NO_NODE = "_CREATED_BY_BARE_DDS_APP_"
 # Of the identifier, as Fast DDS makes it: vendor of the middleware, then the host.
 _VENDOR, _HOST = slice(0, 2), slice(0, 4)
 
@@ -83,7 +84,9 @@ class Publishers:
 
 def _node(info: TopicEndpointInfo) -> str:
     """Return the name of the node that made a publisher, with its namespace."""
-    if info.node_name.startswith("_"):
+    if info.node_name == _NOT_KNOWN_YET:
+        return "a node not known yet"
+    if info.node_name == _NO_NODE:
         return "a program that is no ROS node"
     return f"{info.node_namespace.rstrip('/')}/{info.node_name}".lstrip("/")
 
