@@ -33,6 +33,17 @@ def learned_in_process(episodes):
     return hashes(run.session)
 
 
+def own_publisher(graph, topic):
+    """The publisher of a control topic's owner: what it sends is not a stranger's."""
+    return next(
+        publisher
+        for node in graph.nodes
+        if node.get_name() == topic.owner
+        for publisher in node.publishers
+        if publisher.topic_name == topic.name
+    )
+
+
 class Client:
     """Context manager around a node that is spun with a graph."""
 
