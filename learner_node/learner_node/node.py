@@ -161,6 +161,8 @@ class LearnerNode(GuardedNode):
                 f"of {clock_ticks}"
             )
         self._seen = (observation.simulation, observation.clock_ticks)
+        if self.session.over(observation):
+            return
         answer = self.session.respond(observation)
         if isinstance(answer, EpisodeResult):
             self._finish(answer)

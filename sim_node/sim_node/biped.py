@@ -311,9 +311,14 @@ class SimulatedBiped:
             end_cause=watch.end_cause,
         )
 
-    def end(self, cause: EndCause) -> None:
-        """End the walk from outside, unless it has failed; the clock ticks once."""
-        if self._watch.end_cause is None:
+    def end(self, cause: EndCause, failed: bool = False) -> None:
+        """End the walk from outside; the clock ticks once.
+
+        Args:
+            cause: why.
+            failed: end it by this cause even if it has failed.
+        """
+        if failed or self._watch.end_cause is None:
             self._watch.end_cause = cause
         self._watch.clock_ticks += 1
 

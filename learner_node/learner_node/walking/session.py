@@ -137,6 +137,15 @@ class LearningSession:
             self._count(answer)
         return answer
 
+    def over(self, observation: Observation) -> bool:
+        """Return whether the result of this walk has been told already.
+
+        In real time the robot walks on until it hears it.
+        """
+        walk = (observation.simulation, observation.episode)
+        begins = observation.control_tick == 0 and observation.end_cause is None
+        return walk == self._begun and not self.walking and not begins
+
     def _unseen(self, observation: Observation) -> EpisodeResult:
         """Return the result of a walk that was joined in its middle, if at all."""
         self._cut_off()
