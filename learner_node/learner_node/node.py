@@ -3,7 +3,8 @@
 What failures do:
     the checkpoint cannot be written: learning goes on, log and /diagnostics say so, and
         it is tried again when the next one is due; a service that asked is told.
-    a walk is joined in its middle: it is given up, neither counted nor learned from.
+    a walk is joined in its middle, or ends from outside: it is given up, neither an
+        episode nor learned from, and walked again.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.publisher import Publisher
@@ -31,7 +33,6 @@ from learner_node.checkpoint import CheckpointError, read_checkpoint, write_chec
 from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
-from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.wire import RefusedMessageError, decode, encode
@@ -164,6 +165,8 @@ class LearnerNode(GuardedNode):
                 f"of {clock_ticks}"
             )
         self._seen = (observation.simulation, observation.clock_ticks)
+        if self.session.over(observation):
+            return
         answer = self.session.respond(observation)
         if isinstance(answer, EpisodeResult):
             self._finish(answer)
@@ -177,19 +180,23 @@ class LearnerNode(GuardedNode):
         session = self.session
         frozen = self._settings.frozen
         walked = session.tally.evaluations if frozen else session.episodes
-        # A walk that was cut short because somebody was too slow is walked again.
-        cut_short = frozen and result.end_cause in (EndCause.LATE, EndCause.PEER_SILENT)
-        enough = 0 < self._settings.max_episodes <= walked and not session.trial_due
-        self._done = enough and not cut_short
-        if self._save_due or self._done or session.episodes % every == 0:
+        enough = 0 < self._settings.max_episodes <= walked
+        self._done = enough and not session.trial_due
+        due = session.episodes % every == 0 and not result.end_cause.from_outside
+        if self._save_due or self._done or due:
             self.save()
             self._save_due = False
         self._publish_status()
         self._episodes.publish(string_message(encode(result)))
 
     def _publish_status(self) -> None:
-        status = self.session.status(
-            self.instance, active=self._corrections is not None
+        # Within a walk nothing is settled, and to hash a large memory takes too long.
+        if not self.session.walking:
+            self._settled = self.session.status(self.instance, active=False)
+        status = msgspec.structs.replace(
+            self._settled,
+            active=self._corrections is not None,
+            frozen=self.session.frozen,
         )
         self._status.publish(string_message(encode(status)))
 

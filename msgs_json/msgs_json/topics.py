@@ -53,7 +53,7 @@ ZMP_REFERENCE = Topic(
     "geometry_msgs/msg/PointStamped",
     meaning="planned ZMP, world frame [m]",
 )
-PHASE = Topic("/biped/phase", "std_msgs/msg/String", meaning="PhaseFlags, JSON")
+PHASE = Topic("/biped/phase", "std_msgs/msg/String", meaning="StampedPhase, JSON")
 OBSERVATION = Topic(
     "/biped/observation",
     "std_msgs/msg/String",

@@ -30,6 +30,7 @@ from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
 from sim_node.engines import plant_of
 from sim_node.markers import MarkerPublisher
+from sim_node.pace_watch import PaceWatch
 from sim_node.pilot import Pilot, check_stance
 from sim_node.planned_walk import PlannedWalk
 from sim_node.realtime import Punctuality, RealtimeLoop
@@ -40,6 +41,7 @@ NAME = topics.SIM_NODE
 _WATCH_PERIOD_S = 0.1
 # After a stranger has left, until all have found each other again.
 _CALM_S = 0.5
+_PACE_REPORTS_S = 10.0
 
 
 class SimNode(GuardedNode):
@@ -71,6 +73,7 @@ class SimNode(GuardedNode):
         self._disturbed_at = -math.inf
         self._heard = time.monotonic()
         self._punctuality = Punctuality()
+        self._pace = PaceWatch(self._punctuality)
         self._observed_ns = time.monotonic_ns()
         self._ticks = TickPublisher(self, settings.publish_every_ticks)
         self._markers = MarkerPublisher(
@@ -87,6 +90,8 @@ class SimNode(GuardedNode):
         self.listen(topics.WAIST_REFERENCE, self._on_segment)
         self.listen(topics.EPISODE, self._on_episode)
         self.create_timer(_WATCH_PERIOD_S, self._watch_peers)
+        if settings.pace == "realtime":
+            self.create_timer(_WATCH_PERIOD_S, self._watch_pace)
         self.create_service(SetBool, f"{NAME}/pause", self._on_pause)
         self.create_service(Trigger, f"{NAME}/reset", self._on_reset)
 
@@ -137,6 +142,7 @@ class SimNode(GuardedNode):
         if self._settings.pace == "realtime":
             self._loop = RealtimeLoop(
                 self._pilot,
+                walk.plan.walk_ticks,
                 self._settings.realtime_factor,
                 self._publish,
                 self._punctuality,
@@ -212,6 +218,12 @@ class SimNode(GuardedNode):
         return observation is not None
 
     # -- peers ---------------------------------------------------------------------
+
+    def _watch_pace(self) -> None:
+        text = self._pace.look(self._settings.realtime_factor)
+        if text is not None:
+            self.get_logger().warning(text, throttle_duration_sec=_PACE_REPORTS_S)
+            self.remark(DiagnosticStatus.WARN, "pace", text)
 
     def _watch_peers(self) -> None:
         if self._pilot is None or self._paused:

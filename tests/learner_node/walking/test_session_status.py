@@ -31,6 +31,7 @@ def test_the_status_of_a_new_session():
         schedule_complete=False,
         learned=False,
         frozen=False,
+        given_up={},
         simulated_s=0.0,
         memory_sha256=new_session().memory_sha256(),
         trajectory_sha256="",
