@@ -64,7 +64,6 @@ RESULT = EpisodeResult(
 )
 STATUS = LearnerStatus(
     instance="learner-1",
-    active=True,
     seed=0,
     target_time_s=1.88,
     subtask=0,

@@ -192,12 +192,8 @@ class LearnerNode(GuardedNode):
     def _publish_status(self) -> None:
         # Within a walk nothing is settled, and to hash a large memory takes too long.
         if not self.session.walking:
-            self._settled = self.session.status(self.instance, active=False)
-        status = msgspec.structs.replace(
-            self._settled,
-            active=self._corrections is not None,
-            frozen=self.session.frozen,
-        )
+            self._settled = self.session.status(self.instance)
+        status = msgspec.structs.replace(self._settled, frozen=self.session.frozen)
         self._status.publish(string_message(encode(status)))
 
     def _on_save(

@@ -23,8 +23,6 @@ class LearnerStatus(
 
     instance: Name
     """learner-START_NS-HOST:PROCESS of the one learner of the graph."""
-    active: bool
-    """Takes part; before, it listens whether another one does."""
     seed: Seed
     """Of the session's random choices."""
     target_time_s: float

@@ -182,12 +182,11 @@ class LearningSession:
         """Return a hash of all that was learned."""
         return arrays_sha256(self.learner.memory())
 
-    def status(self, instance: str, active: bool) -> LearnerStatus:
+    def status(self, instance: str) -> LearnerStatus:
         """Return how far the session has come, under the learner's name."""
         schedule = self.task.schedule
         return LearnerStatus(
             instance=instance,
-            active=active,
             seed=self.seed,
             target_time_s=seconds(schedule.target_ticks),
             subtask=schedule.subtask,

@@ -144,7 +144,7 @@ def test_a_trial_that_is_given_up_is_still_due():
 def test_the_count_is_told():
     session = new_session()
     give_up(session, EndCause.LATE)
-    assert session.status("me", active=True).given_up == {EndCause.LATE: 1}
+    assert session.status("me").given_up == {EndCause.LATE: 1}
 
 
 def test_the_count_outlives_a_restart():
