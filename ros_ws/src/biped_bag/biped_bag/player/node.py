@@ -26,7 +26,7 @@ from biped_bag.player.player import Player
 from biped_bag.qos import playing_qos
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_common.terminal_text import printable
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from msgs_json.topics import Topic
 
 NAME = "player"

@@ -227,6 +227,8 @@ def run(options: argparse.Namespace) -> int:
 def _walked(graph: GraphWatch) -> bool:
     """Return whether the walk is over; one cut short by the machine is repeated."""
     result = graph.result
+    if graph.unseen is not None:
+        return True
     return result is not None and (
         result.end_cause not in (EndCause.LATE, EndCause.PEER_SILENT)
         or graph.results >= _ATTEMPTS
