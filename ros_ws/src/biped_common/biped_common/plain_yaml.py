@@ -75,18 +75,18 @@ def _check_form(text: str) -> None:
     levels = values = 0
     for event in yaml.parse(text, Loader=yaml.CSafeLoader):
         if isinstance(event, yaml.AliasEvent):
-            reason = f"*{event.anchor}: aliases are not read"
-            raise ConstructorError(None, None, reason, event.start_mark)
+            raise _refused(event, f"*{event.anchor}: aliases are not read")
         levels += isinstance(event, yaml.CollectionStartEvent)
         levels -= isinstance(event, yaml.CollectionEndEvent)
         values += isinstance(event, yaml.NodeEvent)
-        if levels > _MOST_LEVELS or values > _MOST_VALUES:
-            reason = (
-                f"nested deeper than {_MOST_LEVELS} levels"
-                if levels > _MOST_LEVELS
-                else f"more than {_MOST_VALUES} values"
-            )
-            raise ConstructorError(None, None, reason, event.start_mark)
+        if levels > _MOST_LEVELS:
+            raise _refused(event, f"nested deeper than {_MOST_LEVELS} levels")
+        if values > _MOST_VALUES:
+            raise _refused(event, f"more than {_MOST_VALUES} values")
+
+
+def _refused(where: Any, reason: str) -> ConstructorError:
+    return ConstructorError(None, None, reason, where.start_mark)
 
 
 def _place_and_reason(error: yaml.MarkedYAMLError) -> str:
@@ -102,8 +102,8 @@ class _Loader(yaml.CSafeLoader):
         for key_node, _ in node.value:
             key = self.construct_object(key_node, deep=True)
             if key in seen:
-                reason = f"the key {key_node.value[:_MOST_DIGITS]} stands twice"
-                raise ConstructorError(None, None, reason, key_node.start_mark)
+                name = key_node.value[:_MOST_DIGITS]
+                raise _refused(key_node, f"the key {name} stands twice")
             seen.add(key)
         return mapping
 
@@ -111,8 +111,7 @@ class _Loader(yaml.CSafeLoader):
 def _number(loader: _Loader, node: yaml.ScalarNode) -> Any:
     # 1:1:1 is a number to the base 60, which takes the square of its length to read.
     if len(node.value) > _MOST_DIGITS:
-        reason = f"a number of {len(node.value)} characters"
-        raise ConstructorError(None, None, reason, node.start_mark)
+        raise _refused(node, f"a number of {len(node.value)} characters")
     return SafeConstructor.yaml_constructors[node.tag](loader, node)
 
 
