@@ -33,3 +33,9 @@ class EndCause(str, Enum):
     def __str__(self) -> str:
         """Return the word itself."""
         return self.value
+
+
+FROM_OUTSIDE = frozenset(
+    {EndCause.LATE, EndCause.PEER_SILENT, EndCause.RESET, EndCause.DISTURBED}
+)
+"""Causes that say nothing of how the robot walked."""
