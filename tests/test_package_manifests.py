@@ -28,6 +28,7 @@ ROSDEP_KEYS = {
 """Of what is imported from neither ROS nor the standard library."""
 FROM_PIP = {
     "llvmlite": "llvmlite",
+    "lz4": "lz4",
     "mcap": "mcap",
     "mcap_ros2": "mcap-ros2-support",
     "msgspec": "msgspec",

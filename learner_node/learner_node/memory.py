@@ -31,7 +31,8 @@ def check_memory(memory: Mapping[str, NDArray[Any]], own: Arrays, count: int) ->
         count: number of states in the memory.
 
     Raises:
-        ValueError: an array is missing or belongs to another problem.
+        ValueError: an array is missing, belongs to another problem, or holds numbers
+            that are not finite.
     """
     for name, array in own.items():
         if name not in memory:
@@ -43,6 +44,8 @@ def check_memory(memory: Mapping[str, NDArray[Any]], own: Arrays, count: int) ->
                 f"memory: array {name} is {given.dtype}{given.shape}, "
                 f"this problem needs {array.dtype}{expected}"
             )
+        if given.dtype.kind == "f" and not np.isfinite(given).all():
+            raise ValueError(f"memory: array {name} holds numbers that are not finite")
 
 
 def count_of_states(memory: Mapping[str, NDArray[Any]]) -> int:

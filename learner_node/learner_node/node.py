@@ -29,7 +29,7 @@ from biped_ros.observation_gaps import ObservationGaps
 from biped_ros.process import process_name
 from biped_ros.running import run_node
 from biped_ros.sole_publisher import Publishers
-from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
+from learner_node.checkpoint import read_checkpoint, taking_over, write_checkpoint
 from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
@@ -74,11 +74,8 @@ class LearnerNode(GuardedNode):
             Path(settings.checkpoint_file) if settings.checkpoint_file else None
         )
         if self._file is not None and self._file.exists():
-            header, arrays = read_checkpoint(self._file)
-            try:
-                self.session.restore(header, arrays)
-            except (KeyError, TypeError, ValueError) as error:
-                raise CheckpointError(f"{self._file}: does not fit, {error}") from error
+            with taking_over(self._file):
+                self.session.restore(*read_checkpoint(self._file))
         self.session.frozen = settings.frozen
         self._done = False
         self._save_due = False

@@ -13,8 +13,9 @@ from msgspec import Meta
 MOST_CHARACTERS = 100_000
 """Of a whole JSON text; the longest payload of ours has about 2,000."""
 
-# 10^12 control ticks are 63 years, and their stamp still fits into 32-bit seconds.
-Count = Annotated[int, Meta(ge=0, le=10**12)]
+MOST_TICKS = 10**12
+"""Control ticks: 63 years, and their stamp still fits into 32-bit seconds."""
+Count = Annotated[int, Meta(ge=0, le=MOST_TICKS)]
 Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 Name = Annotated[str, Meta(max_length=200)]
 Digest = Annotated[str, Meta(max_length=64)]

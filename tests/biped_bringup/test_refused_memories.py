@@ -41,7 +41,7 @@ MISFITS: dict[str, tuple[Change, str]] = {
     "no word on a trial": (lambda header, _: header.pop("trial_due"), "trial_due"),
     "computing time that is no number": (
         lambda header, _: header.update(cpu_s="long"),
-        "could not convert",
+        r"Expected `float`, got `str` - at `\$\.cpu_s`",
     ),
     "no tally": (lambda header, _: header.pop("tally"), "tally"),
     "a tally of something else": (
@@ -54,7 +54,7 @@ MISFITS: dict[str, tuple[Change, str]] = {
     ),
     "a subtask before the schedule": (
         lambda header, _: header["progress"].update(subtask=-1),
-        "subtask -1",
+        r"Expected `int` >= 0 - at `\$\.progress\.subtask`",
     ),
     "random numbers of another kind": (
         lambda header, _: header["progress"]["rng"].update(bit_generator="MT19937"),
@@ -87,6 +87,71 @@ MISFITS: dict[str, tuple[Change, str]] = {
     "an array of nobody": (
         lambda _, arrays: arrays.update({"mood": np.zeros(3)}),
         "mood",
+    ),
+    "a log of single precision": (
+        lambda _, arrays: arrays.update({"log/reward": np.zeros(1, dtype=np.float32)}),
+        r"episode log: reward is float32\(1,\), must be a list of float64",
+    ),
+    "an end that there is not": (
+        lambda _, arrays: arrays["log/end_cause"].fill(99),
+        "episode log: end_cause is 99",
+    ),
+    "an end of another type": (
+        lambda _, arrays: arrays.update({"log/end_cause": np.zeros(1)}),
+        "end_cause is float64",
+    ),
+    "a walk of no length": (
+        lambda _, arrays: arrays["log/target_ticks"].fill(0),
+        "episode log: target_ticks is 0",
+    ),
+    "a value that is no number": (
+        lambda _, arrays: arrays["memory/q"].fill(np.nan),
+        "array q holds numbers that are not finite",
+    ),
+    "a state without a place": (
+        lambda _, arrays: arrays["memory/state_centers"].fill(np.inf),
+        "array state_centers holds numbers that are not finite",
+    ),
+    "a tally in words": (
+        lambda header, _: header["tally"].update(simulated_ticks="many"),
+        r"Expected `int`, got `str` - at `\$\.tally\.simulated_ticks`",
+    ),
+    "a tally below nothing": (
+        lambda header, _: header["tally"].update(evaluations=-1),
+        r"\$\.tally\.evaluations",
+    ),
+    "a tally that is a list": (
+        lambda header, _: header.update(tally=[3]),
+        r"\$\.tally",
+    ),
+    "half a tally": (
+        lambda header, _: header["tally"].pop("evaluations"),
+        "tally: counts",
+    ),
+    "a trial that is neither due nor not": (
+        lambda header, _: header.update(trial_due="soon"),
+        r"\$\.trial_due",
+    ),
+    "versions in a list": (
+        lambda header, _: header.update(versions=["1.0"]),
+        r"\$\.versions",
+    ),
+    "a version that colours the screen": (
+        lambda header, _: header["versions"].update(numpy="[red]\x1b[31m"),
+        r"\$\.versions\[\.\.\.\]",
+    ),
+    "ticks that were never walked": (
+        lambda header, _: header.update(walked_ticks={"computed": "all"}),
+        r"\$\.walked_ticks\.computed",
+    ),
+    "a seed in words": (lambda header, _: header.update(seed="seven"), "memory.npz: "),
+    "a generator's state in words": (
+        lambda header, _: header["progress"]["rng"]["state"].update(state="x"),
+        "memory.npz: does not fit",
+    ),
+    "a generator's state beyond all": (
+        lambda header, _: header["progress"]["rng"]["state"].update(state=10**60),
+        "memory.npz: does not fit",
     ),
     "another version": (lambda header, _: header.update(version=1), "version 1"),
     "another format": (lambda header, _: header.update(format="cart"), "is cart"),

@@ -1,7 +1,11 @@
 """Checkpoints come back as they were written, or are refused with a reason."""
 
+import io
 import os
 import re
+import subprocess
+import sys
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -193,7 +197,7 @@ def test_a_foreign_file_is_no_checkpoint(refusal, content):
 
 def test_a_single_array_is_no_checkpoint(refusal, tmp_path):
     content = saved(tmp_path, np.save, np.zeros(3))
-    assert refusal(content) == f"not a {FORMAT}"
+    assert refusal(content).startswith(f"not a {FORMAT}")
 
 
 @pytest.mark.parametrize(
@@ -206,8 +210,20 @@ def test_a_single_array_is_no_checkpoint(refusal, tmp_path):
         {"header": np.array("[1, 2]")},
         {"header": np.array("{}")},
         {"header": np.array(f'{{"format": "{FORMAT}"}}')},
+        {"header": np.array("[" * 100_000)},
+        {"header": np.array(f'{{"format": "{FORMAT}", "version": 2, "seed": NaN}}')},
     ],
-    ids=["empty", "nameless", "numbers", "text", "a list", "no format", "no version"],
+    ids=[
+        "empty",
+        "nameless",
+        "numbers",
+        "text",
+        "a list",
+        "no format",
+        "no version",
+        "deep brackets",
+        "no number",
+    ],
 )
 def test_other_arrays_are_no_checkpoint(refusal, tmp_path, arrays):
     assert refusal(saved(tmp_path, np.savez, **arrays)) == f"not a {FORMAT}"
@@ -295,6 +311,94 @@ def test_a_zip_that_cannot_be_unpacked_is_refused(refusal, file, offset, value):
     for entry in re.finditer(re.escape(ENTRY), bytes(content)):
         content[entry.start() + offset] = value
     assert refusal(bytes(content)).startswith(f"not a {FORMAT}, or damaged (")
+
+
+# -- bounds ------------------------------------------------------------------------
+
+# 4 GB in each of these; reading them must take less than this.
+BOUND_BYTES = 2**28
+READ_WITHIN_BOUNDS = f"""
+import pathlib, resource, sys
+from learner_node.checkpoint import CheckpointError, read_checkpoint
+resource.setrlimit(resource.RLIMIT_DATA, ({BOUND_BYTES}, {BOUND_BYTES}))
+try:
+    read_checkpoint(pathlib.Path(sys.argv[1]))
+except CheckpointError as error:
+    print(error)
+"""
+
+
+def npy_of_shape(shape: tuple[int, ...]) -> bytes:
+    """The file of an array that lacks its numbers."""
+    stream = io.BytesIO()
+    described = {"descr": "<f8", "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(stream, described)
+    return stream.getvalue()
+
+
+def write_zip(file: Path, members: dict[str, bytes], **options: Any) -> None:
+    with zipfile.ZipFile(file, "w", **options) as content:
+        for name, data in members.items():
+            content.writestr(name, data)
+
+
+def write_deflated(file: Path) -> None:
+    with (
+        zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as content,
+        content.open("header.npy", "w", force_zip64=True) as member,
+    ):
+        member.write(npy_of_shape((2**26,)))
+        for _ in range(64):
+            member.write(bytes(2**20))
+
+
+def write_with_large_directory(file: Path) -> None:
+    write_zip(file, {f"{i}.npy": b"" for i in range(5_000)})
+
+
+def write_hole(file: Path) -> None:
+    with file.open("wb") as stream:
+        stream.truncate(2**32)
+
+
+BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
+    "much in little": (write_deflated, "it is compressed"),
+    "a shape of 256 TiB": (
+        lambda file: write_zip(file, {"header.npy": npy_of_shape((2**45,))}),
+        "reshape",
+    ),
+    "a shape of more than there are numbers": (
+        lambda file: write_zip(file, {"header.npy": npy_of_shape((2**62, 2**62))}),
+        r"\(",
+    ),
+    "many members": (write_with_large_directory, r"directory of \d+ bytes|zip of ours"),
+    "a file of 4 GB": (write_hole, "4294967296 bytes, 67108864 at most"),
+}
+
+
+@pytest.mark.parametrize("what", BOMBS)
+def test_a_file_is_refused_without_taking_memory_that_holds(tmp_path, what):
+    write, reason = BOMBS[what]
+    file = tmp_path / "memory.npz"
+    write(file)
+    done = subprocess.run(
+        [sys.executable, "-c", READ_WITHIN_BOUNDS, str(file)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith(f"{file}: ")
+    assert done.stdout.count("\n") == 1
+    assert re.search(reason, done.stdout)
+
+
+def test_what_could_not_be_read_again_is_not_written(file):
+    before = file.read_bytes()
+    with pytest.raises(CheckpointError, match="67108864 at most"):
+        write_checkpoint(file, HEADER, {"memory/q": np.zeros(2**23)})
+    assert file.read_bytes() == before
 
 
 # -- writing -----------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import seconds
+from msgs_json.bounds import MOST_TICKS
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 
@@ -23,6 +25,14 @@ _TYPES = {
     "t_err": np.float64,
     "peak_zmp_error_m": np.float64,
 }
+_RANGES = {
+    "control_ticks": (0, MOST_TICKS),
+    "target_ticks": (1, MOST_TICKS),
+    "end_cause": (0, len(_CAUSES) - 1),
+    "reward": (0.0, sys.float_info.max),
+    "t_err": (0.0, sys.float_info.max),
+    "peak_zmp_error_m": (0.0, sys.float_info.max),
+}
 
 
 class EpisodeLog:
@@ -32,15 +42,29 @@ class EpisodeLog:
         """Start empty, or with what `arrays` returned.
 
         Raises:
-            ValueError: a column is missing, or they differ in length.
+            ValueError: a column is missing, of another type or length, or holds what
+                no episode can have been.
         """
         self._columns: dict[str, list[Any]] = {name: [] for name in _TYPES}
         if columns is not None:
             if set(columns) != set(_TYPES):
                 raise ValueError(f"episode log: columns {sorted(columns)}")
-            self._columns = {name: columns[name].tolist() for name in _TYPES}
-            if len({len(column) for column in self._columns.values()}) > 1:
+            for name, column in columns.items():
+                if column.ndim != 1 or column.dtype != _TYPES[name]:
+                    raise ValueError(
+                        f"episode log: {name} is {column.dtype}{column.shape}, "
+                        f"must be a list of {np.dtype(_TYPES[name])}"
+                    )
+            if len({len(column) for column in columns.values()}) > 1:
                 raise ValueError("episode log: columns of different length")
+            for name, column in columns.items():
+                low, high = _RANGES[name]
+                sound = (low <= column) & (column <= high)
+                if name == "t_err":
+                    sound |= np.isnan(column)  # of walks that cannot be judged
+                if not sound.all():
+                    raise ValueError(f"episode log: {name} is {column[~sound][0]}")
+            self._columns = {name: columns[name].tolist() for name in _TYPES}
 
     def __len__(self) -> int:
         """Return the number of episodes."""

@@ -28,6 +28,7 @@ from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.settings import LearnerSettings
 from learner_node.walking.task import WalkTask
 from learner_node.walking.walks import FrozenWalk, LearningWalk, greedy_walk
+from msgs_json.bounds import Count, Digest
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
@@ -40,23 +41,42 @@ _MEMORY, _LOG = "memory", "log"
 class Tally:
     """Counts of a session, beside memory and schedule."""
 
-    simulated_ticks: int = 0
+    simulated_ticks: Count = 0
     """Control ticks of all learning episodes."""
-    evaluation_ticks: int = 0
+    evaluation_ticks: Count = 0
     """Control ticks of all frozen greedy walks."""
-    evaluations: int = 0
-    schedule_episodes: int | None = None
+    evaluations: Count = 0
+    schedule_episodes: Count | None = None
     """Episodes when the schedule was complete."""
-    greedy_episodes: int | None = None
+    greedy_episodes: Count | None = None
     """Episodes when a frozen greedy walk first succeeded."""
-    trajectories_sha256: str = ""
+    trajectories_sha256: Digest = ""
     """Chained over the learning episodes."""
-    given_up: dict[EndCause, int] = field(default_factory=dict)
+    given_up: dict[EndCause, Count] = field(default_factory=dict)
     """Walks that nothing was made of, by what ended them."""
 
     def give_up(self, cause: EndCause) -> None:
         """Count a walk of which nothing else is kept."""
         self.given_up[cause] = self.given_up.get(cause, 0) + 1
+
+
+class _Progress(msgspec.Struct, forbid_unknown_fields=True):
+    """How far schedule, estimate and chance have come, as in a checkpoint's header."""
+
+    subtask: Count
+    successes: Count
+    schedule_complete: bool
+    t_err_estimate: float | None
+    rng: dict[str, Any]
+
+
+class _Header(msgspec.Struct):
+    """What of a checkpoint's header is the session's."""
+
+    seed: int
+    progress: _Progress
+    trial_due: bool
+    tally: Tally
 
 
 class LearningSession:
@@ -230,20 +250,25 @@ class LearningSession:
         """Go on between two walks, as if never interrupted.
 
         Raises:
-            KeyError, TypeError, ValueError: the content does not fit these settings.
+            ArithmeticError, LookupError, TypeError, ValueError,
+            msgspec.ValidationError: the content does not fit these settings.
         """
+        found = msgspec.convert(dict(header), _Header)
+        # Older checkpoints do not know of walks that were given up.
+        counts = {*header["tally"], "given_up"}
+        if counts != asdict(found.tally).keys():
+            raise ValueError(f"tally: counts {sorted(counts)}")
         groups: dict[str, Arrays] = {_MEMORY: {}, _LOG: {}}
         for name, array in arrays.items():
             group, _, key = name.partition("/")
             groups[group][key] = array
-        tally, log = _tally(header["tally"]), EpisodeLog(groups[_LOG])
-        progress = header["progress"]
+        log = EpisodeLog(groups[_LOG])
         self.learner.restore(groups[_MEMORY])
-        self.learner.rng.bit_generator.state = progress["rng"]
-        self.task.restore(progress)
-        self.seed = int(header["seed"])
-        self._trial_due = bool(header["trial_due"])
-        self.tally, self.log = tally, log
+        self.learner.rng.bit_generator.state = found.progress.rng
+        self.task.restore(header["progress"])
+        self.seed = found.seed
+        self._trial_due = found.trial_due
+        self.tally, self.log = found.tally, log
 
     def _count(self, result: EpisodeResult) -> None:
         tally = self.tally
@@ -267,15 +292,3 @@ class LearningSession:
         self._trial_due = (
             result.schedule_complete and result.completed and not self.learned
         )
-
-
-def _tally(counts: Mapping[str, Any]) -> Tally:
-    """Return the tally of a checkpoint.
-
-    Raises:
-        TypeError, ValueError: it is none.
-    """
-    tally = Tally(**counts)
-    # Older checkpoints do not know it; JSON makes words of its causes.
-    tally.given_up = {EndCause(c): int(n) for c, n in dict(tally.given_up).items()}
-    return tally

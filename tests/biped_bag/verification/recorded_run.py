@@ -47,6 +47,26 @@ class RecordedRun:
             self._walker.walk(self)
         return self.messages
 
+    def give_up(self, cause, observations, *, answered):
+        """Begin a walk and end it from outside, as the simulation does.
+
+        Args:
+            cause: of the end.
+            observations: before it.
+            answered: the last correction came, too late.
+        """
+        walker = self._walker
+        walker._walks += 1
+        walker.reference.reset()
+        answer = self.respond(walker.biped.begin_walk(walker._walks))
+        for _ in range(observations):
+            segment = walker.reference.segment(answer)
+            answer = self.respond(walker.biped.execute(segment))
+        if not answered:
+            del self.messages[-1]
+        walker.biped.end(cause)
+        self.respond(walker.biped.observe())
+
     def respond(self, observation):
         """Stand between robot and learner, and write down what both say."""
         answer = self.session.respond(observation)

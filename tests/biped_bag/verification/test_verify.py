@@ -8,15 +8,17 @@ from tests.biped_bag.verification.recorded_run import RecordedRun
 from biped_bag.verification.cost import FROM_OBSERVATIONS, FROM_TOPICS
 from biped_bag.verification.report import Verdict
 from biped_bag.verification.verify import verify
+from biped_bag.verification.walks import WANTED, ImpossibleWalkError
 from biped_bringup.run_settings import load_settings
 from biped_ros.cdr import string_message, string_text
 from biped_ros.messages import correction_of, correction_template
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
+from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
-from msgs_json.wire import MalformedMessageError, decode, encode
+from msgs_json.wire import decode, encode
 
 SEED = 5
 WALKS = 5
@@ -46,6 +48,13 @@ def from_walk(messages, number):
         if decode(Observation, string_text(messages[i][1])).episode == number:
             return messages[i:]
     raise AssertionError(f"no walk {number}")
+
+
+def status_of(name, message, **changes):
+    """Return a status in another learner's name."""
+    status = decode(LearnerStatus, string_text(message[1]))
+    changed = msgspec.structs.replace(status, instance=name, **changes)
+    return topics.LEARNER_STATUS.name, string_message(encode(changed))
 
 
 def change_correction(messages, place, change):
@@ -114,12 +123,37 @@ def test_a_missing_correction_is_found(run, messages):
     assert found.verdict is Verdict.NOT_VERIFIED
 
 
-def test_a_correction_that_nobody_asked_for_is_found(run, messages):
+@pytest.mark.parametrize(
+    ("value_m", "ticks_later"),
+    [
+        ([0.0, 0.0], 1),
+        ([0.001, 0.0], 0),
+        ([np.nan, 0.0], 0),
+        ([0.0, -np.inf], 0),
+        ([1.0, 0.0], 0),
+    ],
+    ids=["for no observation", "beside", "no number", "endless", "out of range"],
+)
+@pytest.mark.parametrize("before", [True, False])
+def test_a_correction_that_is_refused_is_no_difference(
+    run, messages, value_m, ticks_later, before
+):
     place = places(messages, topics.CORRECTION)[200]
-    _, clock_ticks, value_m = correction_of(messages[place][1])
-    extra = correction_template().fill(value_m, clock_ticks + 1)
-    messages.insert(place, (topics.CORRECTION.name, extra))
-    assert verify(run.new_session(), messages).differences == 1
+    _, clock_ticks, _ = correction_of(messages[place][1])
+    extra = correction_template().fill(value_m, clock_ticks + ticks_later)
+    messages.insert(place + (not before), (topics.CORRECTION.name, extra))
+    found = verify(run.new_session(), messages)
+    assert found.verdict is Verdict.VERIFIED
+    assert sum(walk.refused for walk in found.walks) == 1
+
+
+def test_a_correction_of_a_walk_that_is_over_is_refused(run, messages):
+    end = places(messages, topics.EPISODE)[2]
+    last = max(i for i in places(messages, topics.OBSERVATION) if i < end)
+    clock_ticks = decode(Observation, string_text(messages[last][1])).clock_ticks
+    extra = correction_template().fill([0.0, 0.0], clock_ticks)
+    messages.insert(end, (topics.CORRECTION.name, extra))
+    assert verify(run.new_session(), messages).verdict is Verdict.VERIFIED
 
 
 def test_a_changed_result_is_found(run, messages):
@@ -184,13 +218,31 @@ def test_a_walk_that_was_only_offered_lacks_nothing(run, messages):
 
 
 def test_a_learner_that_was_started_again_is_not_followed(run, messages):
-    place = places(messages, topics.LEARNER_STATUS)[2]
-    status = decode(LearnerStatus, string_text(messages[place][1]))
-    again = msgspec.structs.replace(status, instance="learner-2")
-    messages[place] = (topics.LEARNER_STATUS.name, string_message(encode(again)))
+    for place in places(messages, topics.LEARNER_STATUS)[2:]:
+        messages[place] = status_of("learner-2", messages[place])
     found = verify(run.new_session(), messages)
     assert "started again" in found.walks[-1].not_checked
     assert found.verdict is Verdict.NOT_VERIFIED
+
+
+@pytest.mark.parametrize("name", ["a-stranger", "stranger"])
+@pytest.mark.parametrize("place", [0, 3])
+def test_a_stranger_s_status_is_no_restart(run, messages, name, place):
+    at = places(messages, topics.LEARNER_STATUS)[place]
+    for where in (at + 1, at):
+        messages.insert(where, status_of(name, messages[at], episodes=77, frozen=True))
+    assert verify(run.new_session(), messages).verdict is Verdict.VERIFIED
+
+
+def test_a_stranger_s_result_is_no_difference(run, messages):
+    for place in reversed(places(messages, topics.EPISODE)):
+        result = decode(EpisodeResult, string_text(messages[place][1]))
+        false = msgspec.structs.replace(
+            result, learning=False, reward=1.0, trajectory_sha256=""
+        )
+        text = string_message(encode(false))
+        messages.insert(place, (topics.EPISODE.name, text))
+    assert verify(run.new_session(), messages).verdict is Verdict.VERIFIED
 
 
 def test_topics_may_be_recorded_out_of_step(run, messages):
@@ -229,10 +281,56 @@ def test_thinned_topics_leave_the_observations_to_be_added_up(run, messages):
     assert found.walks[0].cost.t_err_deviation < 1e-12
 
 
-def test_a_foreign_message_is_wrong_input(run, messages):
-    messages.append((topics.OBSERVATION.name, b"\0\1\0\0nothing"))
-    with pytest.raises(MalformedMessageError, match="/biped/observation"):
+JUNK = {
+    "no text": b"\0\1\0\0nothing",
+    "nothing": b"",
+    "no JSON": string_message("{"),
+    "deep brackets": string_message("[" * 90_000),
+    "another version": string_message('{"version": 99}'),
+    "half a letter": b"\0\1\0\0\2\0\0\0\xff\0",
+}
+
+
+def test_messages_that_no_node_understands_are_passed_over(run, messages):
+    for place in (len(messages), 300, 0):
+        for topic in WANTED:
+            messages[place:place] = [(topic, junk) for junk in JUNK.values()]
+    found = verify(run.new_session(), messages)
+    assert found.verdict is Verdict.VERIFIED
+    assert found.not_understood == dict.fromkeys(WANTED, 3 * len(JUNK))
+
+
+def test_numbers_that_no_walk_has_are_refused(run, messages):
+    place = places(messages, topics.OBSERVATION)[20]
+    observation = decode(Observation, string_text(messages[place][1]))
+    false = msgspec.structs.replace(observation, torque_integral_n2m2_s=-1e9)
+    messages[place] = (topics.OBSERVATION.name, string_message(encode(false)))
+    with pytest.raises(ImpossibleWalkError, match=r"^walk 1: "):
         verify(run.new_session(), messages)
+
+
+@pytest.mark.parametrize("cause", [c for c in EndCause if c.from_outside])
+@pytest.mark.parametrize("answered", [True, False])
+def test_a_walk_that_was_given_up_is_no_difference(cause, answered):
+    given_up = RecordedRun(load_settings("quick"), SEED)
+    given_up.walk(1)
+    given_up.give_up(cause, observations=20, answered=answered)
+    given_up.walk(2)
+    found = verify(given_up.new_session(), given_up.messages)
+    given_up.close()
+    assert found.verdict is Verdict.VERIFIED
+    assert [walk.differences for walk in found.walks] == [0] * 4
+
+
+def test_after_a_walk_given_up_without_a_result_nothing_is_claimed(run):
+    given_up = RecordedRun(load_settings("quick"), SEED)
+    given_up.give_up(EndCause.PEER_SILENT, observations=20, answered=True)
+    del given_up.messages[places(given_up.messages, topics.EPISODE)[0]]
+    given_up.walk(1)
+    found = verify(given_up.new_session(), given_up.messages)
+    given_up.close()
+    assert found.differences == 0
+    assert "the learner's result of walk 1" in found.walks[1].not_checked
 
 
 def test_frozen_walks_are_checked_greedily(run):

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 from tests.learner_node.walking.sessions import (
@@ -65,7 +66,7 @@ def test_a_header_without_a_part_is_refused(missing):
     session = with_schedule_complete()
     header = session.header()
     del header[missing]
-    with pytest.raises(KeyError, match=missing):
+    with pytest.raises(msgspec.ValidationError, match=missing):
         new_session().restore(header, session.arrays())
 
 

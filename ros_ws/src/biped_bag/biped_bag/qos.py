@@ -16,7 +16,7 @@ from rclpy.qos import (
     ReliabilityPolicy,
 )
 
-from biped_bag.storage.contents import BagTopic
+from biped_bag.storage.contents import BagTopic, OfferedQos
 from biped_common.timing import NS_PER_S
 
 RECORDED_DEPTH = 5000
@@ -42,10 +42,10 @@ def playing_qos(topic: BagTopic) -> QoSProfile:
     """Return a profile with which whoever heard the recorded publishers hears again.
 
     Reliable and transient local as soon as one of them was; kept is as much as the
-    most thorough of them kept, where that is known.
+    most thorough of them kept, where that is known, and 5,000 messages at most.
     """
     offered = topic.offered_qos
-    depth = max((int(qos.get("depth") or 0) for qos in offered), default=0)
+    depth = max(map(_depth, offered), default=0)
     return _profile(
         depth or (_LATCHED_DEPTH if topic.latched else _PLAYED_DEPTH),
         reliable=not offered or any(q.get("reliability") in _RELIABLE for q in offered),
@@ -79,6 +79,13 @@ def as_rosbag2(qos: QoSProfile) -> dict[str, Any]:
         "liveliness_lease_duration": _time(qos.liveliness_lease_duration),
         "avoid_ros_namespace_conventions": qos.avoid_ros_namespace_conventions,
     }
+
+
+def _depth(offered: OfferedQos) -> int:
+    depth = offered.get("depth")
+    if not isinstance(depth, int) or depth < 0:
+        return 0  # not known
+    return min(depth, _PLAYED_DEPTH)
 
 
 def _profile(depth: int, *, reliable: bool, latched: bool) -> QoSProfile:

@@ -17,7 +17,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-import yaml
+from biped_common.plain_yaml import yaml_text
 
 RUN_RECORD = "biped.run"
 """At the head of every file: everything that is needed to do the run again."""
@@ -68,7 +68,7 @@ def run_record(
         "start": datetime.now(timezone.utc).isoformat(timespec="milliseconds"),
         "seed": str(seed),
         "preset": preset,
-        "settings": yaml.safe_dump(dict(settings), sort_keys=False),
+        "settings": yaml_text(dict(settings)),
         "begins_with": FROM_NOTHING if memory_file is None else memory_file.name,
         "frozen": "true" if frozen else "false",
         "pace": pace,

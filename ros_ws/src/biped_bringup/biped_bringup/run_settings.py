@@ -8,8 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import yaml
-
+from biped_common.plain_yaml import YamlError, read_yaml, read_yaml_file
 from biped_common.settings import (
     Settings,
     SettingsError,
@@ -72,7 +71,7 @@ def load_settings(
     Raises:
         SettingsError: naming key, value and what is allowed.
     """
-    return _laid_over(_parsed(preset_text(preset), f"preset {preset}"), file, changes)
+    return _laid_over(read_yaml(preset_text(preset)), file, changes)
 
 
 def changed_settings(
@@ -109,11 +108,7 @@ def _laid_over(
     values: Mapping[str, Any], file: Path | None, changes: Iterable[str]
 ) -> RunSettings:
     if file is not None:
-        try:
-            text = file.read_text()
-        except (OSError, UnicodeDecodeError) as error:
-            raise SettingsError("file", str(file), f"cannot be read: {error}") from None
-        values = overlay(values, _parsed(text, str(file)))
+        values = overlay(values, _content(file))
     given: set[str] = set()
     for text in changes:
         change = _change(text)
@@ -126,16 +121,17 @@ def _laid_over(
     return from_mapping(RunSettings, values)
 
 
-def _parsed(text: str, name: str) -> Mapping[str, Any]:
+def _content(file: Path) -> Mapping[str, Any]:
     try:
-        values = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise SettingsError("file", name, f"is not YAML: {reason}") from None
+        values = read_yaml_file(file)
+    except OSError as error:
+        raise SettingsError("file", str(file), f"cannot be read: {error}") from None
+    except YamlError as error:
+        raise SettingsError("file", str(file), f"is not YAML: {error}") from None
     if values is None:
         return {}
     if not isinstance(values, Mapping):
-        raise SettingsError("file", name, "must hold sections of settings")
+        raise SettingsError("file", str(file), "must hold sections of settings")
     return values
 
 
@@ -145,7 +141,6 @@ def _change(text: str) -> dict[str, Any]:
     if not separator or not key:
         raise SettingsError("--set", text, "must have the form section.key=value")
     try:
-        return nested(key, yaml.safe_load(value))
-    except (yaml.YAMLError, ValueError):
-        # Dates that do not exist and endless numbers are ValueErrors.
+        return nested(key, read_yaml(value))
+    except YamlError:
         raise SettingsError("--set", text, "the value is not YAML") from None

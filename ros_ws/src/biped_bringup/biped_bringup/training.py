@@ -8,8 +8,9 @@ from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+import msgspec
 import numpy as np
 
 from biped_bringup.replay import DEFAULT_MEMORY_BYTES, ReplayingWalker
@@ -18,13 +19,26 @@ from biped_bringup.walker import WalkedTicks, Walker
 from biped_common.seeds import robot_stream
 from biped_common.settings import from_mapping, to_mapping
 from biped_common.timing import seconds
-from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
+from learner_node.checkpoint import (
+    CheckpointError,
+    read_checkpoint,
+    taking_over,
+    write_checkpoint,
+)
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
 
 # Packages whose version can change a walk's last bit.
 _PACKAGES = ("biped", "numpy", "numba", "pybullet")
+
+
+class _Spent(msgspec.Struct):
+    """What a checkpoint's header tells of how it was made."""
+
+    walked_ticks: WalkedTicks = msgspec.field(default_factory=WalkedTicks)
+    cpu_s: float = 0.0
+    versions: dict[str, Annotated[str, msgspec.Meta(pattern=r"^[\w.+!-]{0,50}\Z")]] = {}
 
 
 class TrainingRun:
@@ -177,25 +191,21 @@ class TrainingRun:
         header, arrays = read_checkpoint(path)
         run = None
         try:
-            settings = from_mapping(RunSettings, header["settings"])
-            run = cls(settings, header["seed"], replay_bytes)
-            run.session.restore(header, arrays)
-            # A learner on ROS does not know the robot's generator, nor what was
-            # computed and how long that took.
-            if "robot_rng" in header:
-                run._robot_rng.bit_generator.state = header["robot_rng"]
-            run.walker.ticks = WalkedTicks(**header.get("walked_ticks", {}))
-            run.cpu_s = float(header.get("cpu_s", 0.0))
-        except (
-            AttributeError, KeyError, OverflowError, TypeError, ValueError
-        ) as error:  # fmt: skip
+            with taking_over(path):
+                settings = from_mapping(RunSettings, header["settings"])
+                run = cls(settings, header["seed"], replay_bytes)
+                run.session.restore(header, arrays)
+                # A learner on ROS does not know the robot's generator, nor what was
+                # computed and how long that took.
+                if "robot_rng" in header:
+                    run._robot_rng.bit_generator.state = header["robot_rng"]
+                spent = msgspec.convert(header, _Spent)
+                run.walker.ticks, run.cpu_s = spent.walked_ticks, spent.cpu_s
+                run.written_by = spent.versions
+        except CheckpointError:
             if run is not None:
                 run.close()
-            reason = " ".join(f"{type(error).__name__}: {error}".split())
-            raise CheckpointError(
-                f"{path}: does not fit this program, {reason}"
-            ) from error
-        run.written_by = dict(header.get("versions", {}))
+            raise
         return run
 
     def under(

@@ -31,6 +31,7 @@ from biped_common.errors import BipedError
 AnySettings = TypeVar("AnySettings", bound="Settings")
 Content = TypeVar("Content")
 _SECTION = "must be a section of keys"
+_LONGEST_SHOWN = 200  # characters of a value in an error
 _NOUNS = {int: "a whole number", bool: "true or false", str: "text"}
 _WITHOUT_DOT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
 
@@ -55,9 +56,12 @@ class SettingsError(BipedError, ValueError):
 
 def _shown(value: object) -> str:
     try:
-        return repr(value)
+        text = repr(value)
     except ValueError:
         return "a whole number of thousands of digits"  # which Python does not write
+    except RecursionError:
+        return "sections within sections without end"
+    return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
 
 
 # -- declaring -------------------------------------------------------------------------
@@ -257,6 +261,8 @@ def from_json(key: str, text: str, kind: type[Content]) -> Content:
         return msgspec.json.decode(text, type=kind)
     except msgspec.DecodeError as error:
         raise SettingsError(key, text, f"is not the JSON it must be, {error}") from None
+    except RecursionError:
+        raise SettingsError(key, text, "is JSON that is nested too deep") from None
 
 
 def to_mapping(settings: Any) -> dict[str, Any]:
@@ -282,8 +288,11 @@ def overlay(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, An
 
 def nested(key: str, value: Any) -> dict[str, Any]:
     """Return the mapping in which the dotted key has this value, and nothing else."""
-    first, dot, rest = key.partition(".")
-    return {first: nested(rest, value) if dot else value}
+    *sections, name = key.split(".")
+    mapping = {name: value}
+    for name in reversed(sections):
+        mapping = {name: mapping}
+    return mapping
 
 
 def dotted(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

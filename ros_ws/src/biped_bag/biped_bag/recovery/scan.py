@@ -8,6 +8,9 @@ where a length leads nowhere, the next record that holds together is searched fo
     byte by byte; what lies between is a hole.
 an attachment must match its checksum; other records have none, and are taken when
     all their lengths agree.
+an end of the data behind which whole chunks follow is none: a copy of it, perhaps.
+where more bytes have been looked at in vain than there are in many such files, the rest
+    counts as damaged: beginnings that lead to nothing can be made by the thousand.
 """
 
 from __future__ import annotations
@@ -15,57 +18,69 @@ from __future__ import annotations
 import mmap
 import re
 import struct
-import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from io import BytesIO
 
-import zstandard
-from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import (
     Attachment,
     Channel,
-    Chunk,
     DataEnd,
     Header,
-    McapRecord,
     Message,
-    MessageIndex,
     Metadata,
     Schema,
 )
-from mcap.stream_reader import breakup_chunk
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
-from biped_bag.storage.integrity import DAMAGE, RECORD_HEADER
+from biped_bag.storage.mcap_record import (
+    MOST_CHUNK_BYTES,
+    RECORD_HEADER,
+    ChannelIndex,
+    DamagedRecordError,
+    attachment_matches,
+    channel_index,
+    parsed,
+    place_of,
+    records_in,
+    stored_chunk,
+    unpacked,
+)
 
-# Before its data a chunk has times, size, CRC, name of the compression, length of data.
 _CHUNK_TIMES = struct.Struct("<QQ")
-_CHUNK_FIXED = struct.Struct("<QQQII")
-_LENGTH = struct.Struct("<Q")
-_CRC_SIZE = 4
-_LARGEST_CHUNK = 2**31  # unpacked bytes; a damaged size must not take all memory
 # The beginning of a record that a search may stop at: none is longer than 2**40 bytes.
 # Looked for ahead, since what only seems to be one may overlap one that is.
 _BEGINNING = re.compile(
     rb"(?=[\x06\x07\x09\x0c].{5}\x00{3}|\x0f\x04\x00{7})", flags=re.DOTALL
 )
-_READERS: dict[int, Callable[[ReadDataStream], McapRecord]] = {
-    Opcode.HEADER: Header.read,
-    Opcode.SCHEMA: Schema.read,
-    Opcode.CHANNEL: Channel.read,
-    Opcode.MESSAGE_INDEX: MessageIndex.read,
-    Opcode.METADATA: Metadata.read,
-    Opcode.DATA_END: DataEnd.read,
-}
+_CHUNK_BEGINNING = re.compile(rb"(?=\x06.{5}\x00{3})", flags=re.DOTALL)
+_IN_VAIN_BYTES, _IN_VAIN_FILES = 2**28, 4
+
+Definition = Header | Schema | Channel | Metadata | Attachment
 
 
 @dataclass(frozen=True)
 class WholeChunk:
-    """The records of a chunk that matches its checksum."""
+    """A chunk that matches its checksum."""
 
-    records: list[McapRecord]
+    at: int
+    end: int
+    data: bytes
+    """Unpacked."""
+
+    @property
+    def records(self) -> Iterator[Schema | Channel | Message]:
+        """What it holds."""
+        return records_in(self.data)
+
+
+@dataclass(frozen=True)
+class End:
+    """The end of the data."""
+
+    at: int
+    crc: int
+    """CRC-32 of all bytes before; 0 if the recorder took none."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +96,7 @@ class Hole:
     may_hold_messages: bool = True
 
 
-Found = McapRecord | WholeChunk | Hole
+Found = Definition | Message | ChannelIndex | WholeChunk | End | Hole
 
 
 def scan(content: mmap.mmap, data_end_at: int | None) -> Iterator[Found]:
@@ -93,109 +108,108 @@ def scan(content: mmap.mmap, data_end_at: int | None) -> Iterator[Found]:
             record that ends them, or with the file.
     """
     size = len(content) if data_end_at is None else data_end_at
-    at = len(MAGIC) if content[: len(MAGIC)] == MAGIC else 0
-    chunked = False
-    while at < size:
-        found, end = _record_at(content, at, size)
-        if isinstance(found, Message) and chunked:
-            found = None  # messages stand in chunks, or all of them outside
-        if found is None:
-            end = _next_record(content, at + 1, size)
-            found = Hole(at, end, *_torn_chunk(content, at))
-        chunked = chunked or isinstance(found, WholeChunk)
-        yield found
-        if isinstance(found, DataEnd):
-            return
-        at = end
+    yield from _Scan(content, size).run()
 
 
-def _next_record(content: mmap.mmap, start: int, size: int) -> int:
-    """Return where the next record that holds together begins, or the end."""
-    for beginning in _BEGINNING.finditer(content, start, size):
-        if _record_at(content, beginning.start(), size)[0] is not None:
-            return beginning.start()
-    return size
+class _Scan:
+    def __init__(self, content: mmap.mmap, size: int) -> None:
+        self._content = content
+        self._size = size
+        self._in_vain = _IN_VAIN_BYTES + _IN_VAIN_FILES * size
+        """Bytes that may still be looked at without finding a record there."""
 
+    def run(self) -> Iterator[Found]:
+        at = len(MAGIC) if self._content[: len(MAGIC)] == MAGIC else 0
+        chunked = False
+        while at < self._size:
+            found, end = self._record_at(at)
+            if isinstance(found, Message) and chunked:
+                found = None  # messages stand in chunks, or all of them outside
+            if isinstance(found, End):
+                end = self._next_record(end, _CHUNK_BEGINNING)
+                if end == self._size:
+                    yield found
+                    return
+                found = Hole(at, end, "an end of the data before the end")
+            if found is None:
+                end = self._next_record(at + 1, _BEGINNING)
+                found = Hole(at, end, *self._torn_chunk(at))
+            chunked = chunked or isinstance(found, WholeChunk)
+            yield found
+            at = end
 
-def _record_at(content: mmap.mmap, at: int, size: int) -> tuple[Found | None, int]:
-    """Return the record at a position, if it holds together, and where it ends."""
-    if at + RECORD_HEADER.size > size:
-        return None, size
-    opcode, length = RECORD_HEADER.unpack_from(content, at)
-    body = at + RECORD_HEADER.size
-    if opcode == Opcode.CHUNK:
-        return _chunk_at(content, body, length, size)
-    if body + length > size:
-        return None, size
-    end = body + length
-    if opcode == Opcode.ATTACHMENT:
-        return _attachment(content[body:end], at, end), end
-    try:
-        stream = ReadDataStream(BytesIO(content[body:end]))
-        if opcode == Opcode.MESSAGE:
-            return Message.read(stream, length), end
-        record = _READERS[opcode](stream)
-        return (record if stream.count == length else None), end
-    except DAMAGE:
-        return None, end
+    def _next_record(self, start: int, beginnings: re.Pattern[bytes]) -> int:
+        """Return where the next record that holds together begins, or the end."""
+        for beginning in beginnings.finditer(self._content, start, self._size):
+            if self._record_at(beginning.start())[0] is not None:
+                return beginning.start()
+            if self._in_vain < 0:
+                break
+        return self._size
 
-
-def _attachment(body: bytes, at: int, end: int) -> Attachment | Hole | None:
-    try:
-        stream = ReadDataStream(BytesIO(body))
-        attachment: Attachment = Attachment.read(stream)
-    except DAMAGE:
-        return None
-    if stream.count != len(body):
-        return None
-    (crc,) = struct.unpack("<I", body[-_CRC_SIZE:])
-    if crc and zlib.crc32(body[:-_CRC_SIZE]) != crc:
-        return Hole(at, end, f"attachment {attachment.name}", may_hold_messages=False)
-    return attachment
-
-
-def _chunk_at(
-    content: mmap.mmap, body: int, length: int, size: int
-) -> tuple[Found | None, int]:
-    """Return a chunk, or the hole that it is, and where it ends."""
-    try:
-        start_ns, end_ns, unpacked, crc, name_size = _CHUNK_FIXED.unpack_from(
-            content, body
-        )
-        name_at = body + _CHUNK_FIXED.size
-        data_at = name_at + name_size + _LENGTH.size
-        compression = content[name_at : name_at + name_size].decode()
-        (data_size,) = _LENGTH.unpack_from(content, data_at - _LENGTH.size)
-    except DAMAGE:
-        return None, size
-    by_record = body + length
-    by_data = data_at + data_size
-    for end in dict.fromkeys((by_data, by_record)):
-        if not data_at <= end <= size:
-            continue
-        chunk = Chunk(
-            compression, content[data_at:end], end_ns, start_ns, crc, unpacked
-        )
+    def _record_at(self, at: int) -> tuple[Found | None, int]:
+        """Return the record at a position, if it holds together, and where it ends."""
+        if self._content[at] == Opcode.CHUNK:
+            return self._chunk_at(at)
+        looked_at = RECORD_HEADER.size
         try:
-            if _unpacked_size(chunk) <= _LARGEST_CHUNK:
-                return WholeChunk(breakup_chunk(chunk, validate_crc=True)), end
-        except DAMAGE:
-            continue
-    if by_record == by_data <= size:
-        return Hole(body - RECORD_HEADER.size, by_data, "chunk", end_ns), by_data
-    return None, size
+            place = place_of(self._content, at, self._size)
+            looked_at = place.end - at
+            body = self._content[place.body : place.end]
+            return _record(place.opcode, at, body, place.end), place.end
+        except DamagedRecordError:
+            self._in_vain -= looked_at
+        return None, self._size
+
+    def _chunk_at(self, at: int) -> tuple[Found | None, int]:
+        """Return a chunk, or the hole that it is, and where it ends."""
+        body = at + RECORD_HEADER.size
+        try:
+            _, length = RECORD_HEADER.unpack(self._content[at:body])
+            chunk = stored_chunk(self._content, body)
+        except (DamagedRecordError, struct.error):
+            return None, self._size
+        by_record = body + length
+        by_data = chunk.data_at + chunk.data_bytes
+        for end in dict.fromkeys((by_data, by_record)):
+            if not chunk.data_at <= end <= self._size:
+                continue
+            if end - chunk.data_at > MOST_CHUNK_BYTES:
+                continue
+            try:
+                data = unpacked(chunk, self._content[chunk.data_at : end])
+                for _ in records_in(data):
+                    pass
+                return WholeChunk(at, end, data), end
+            except DamagedRecordError:
+                self._in_vain -= end - at + min(chunk.unpacked_bytes, MOST_CHUNK_BYTES)
+        if by_record == by_data <= self._size:
+            return Hole(at, by_data, "chunk", chunk.end_ns), by_data
+        return None, self._size
+
+    def _torn_chunk(self, at: int) -> tuple[str, int]:
+        """Return what stood at a hole and, of a chunk, its last log time."""
+        times_at = at + RECORD_HEADER.size
+        torn = self._content[at] == Opcode.CHUNK
+        if not torn or times_at + _CHUNK_TIMES.size > len(self._content):
+            return "bytes", 0
+        start_ns, end_ns = _CHUNK_TIMES.unpack_from(self._content, times_at)
+        return "chunk", end_ns if start_ns <= end_ns else 0
 
 
-def _unpacked_size(chunk: Chunk) -> int:
-    if chunk.compression != "zstd":
-        return len(chunk.data)
-    return zstandard.get_frame_parameters(chunk.data).content_size
+def _record(opcode: int, at: int, body: bytes, end: int) -> Found:
+    """Return a record that may stand between chunks.
 
-
-def _torn_chunk(content: mmap.mmap, at: int) -> tuple[str, int]:
-    """Return what stood at a hole and, of a chunk, its last log time."""
-    body = at + RECORD_HEADER.size
-    if content[at] != Opcode.CHUNK or body + _CHUNK_TIMES.size > len(content):
-        return "bytes", 0
-    start_ns, end_ns = _CHUNK_TIMES.unpack_from(content, body)
-    return "chunk", end_ns if start_ns <= end_ns else 0
+    Raises:
+        DamagedRecordError: it does not hold together, or is of another kind.
+    """
+    if opcode == Opcode.MESSAGE_INDEX:
+        return channel_index(body)
+    record = parsed(opcode, body)
+    if isinstance(record, Attachment) and not attachment_matches(body):
+        return Hole(at, end, f"attachment {record.name!r}", may_hold_messages=False)
+    if isinstance(record, DataEnd):
+        return End(at, record.data_section_crc)
+    if isinstance(record, Definition | Message):
+        return record
+    raise DamagedRecordError(f"byte {at}: no record that stands among the data")

@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from mcap.records import Message, MessageIndex
+from mcap.records import Message
 
 from biped_bag.recovery.report import Loss
+from biped_bag.storage.mcap_record import ChannelIndex
 
 
 @dataclass
@@ -83,7 +84,7 @@ class FileTally:
     def __init__(self) -> None:
         self.channels: dict[int, ChannelTally] = {}
         self._hole = False
-        self._indexes: list[MessageIndex] = []
+        self._indexes: list[ChannelIndex] = []
         self._unknown_holes = 0
         self.last_ns = 0
         """Last log time that anything tells of; 0 if nothing does."""
@@ -107,7 +108,7 @@ class FileTally:
         self._hole = True
         self.last_ns = max(self.last_ns, end_ns)
 
-    def add_index(self, index: MessageIndex) -> None:
+    def add_index(self, index: ChannelIndex) -> None:
         """Take the index of a damaged chunk into account, if there is one."""
         if self._hole:
             self._indexes.append(index)
@@ -121,9 +122,8 @@ class FileTally:
         if not self._hole:
             return
         for index in self._indexes:
-            times = [time for time, _ in index.records]
-            self.last_ns = max(self.last_ns, *times)
-            self.channel(index.channel_id).add_hole(len(times), min(times))
+            self.last_ns = max(self.last_ns, index.last_ns)
+            self.channel(index.channel_id).add_hole(index.messages, index.first_ns)
         if not self._indexes or not whole_index:
             self._unknown_holes += 1
             for tally in self.channels.values():

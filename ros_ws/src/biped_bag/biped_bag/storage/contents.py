@@ -10,9 +10,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import yaml
 from mcap.records import Channel, Message, Schema
 from mcap.well_known import MessageEncoding
+
+from biped_bag.errors import BagError
+from biped_common.plain_yaml import YamlError, read_yaml, yaml_text
 
 _QOS_KEY = "offered_qos_profiles"
 _TYPE_HASH_KEY = "topic_type_hash"
@@ -79,7 +81,7 @@ def channel_metadata(topic: BagTopic) -> dict[str, str]:
     profiles = [dict(profile) for profile in topic.offered_qos]
     return {
         # With the words of metadata.yaml: readers compare the two.
-        _QOS_KEY: yaml.safe_dump(profiles, sort_keys=False).strip() if profiles else "",
+        _QOS_KEY: yaml_text(profiles).strip() if profiles else "",
         _TYPE_HASH_KEY: topic.type_hash,
     }
 
@@ -88,21 +90,40 @@ def topic_of(channel: Channel, schema: Schema, count: int = 0) -> BagTopic:
     """Return the topic that an MCAP channel and its schema describe.
 
     Profiles that cannot be understood count as not known.
+
+    Raises:
+        BagError: name, type or definition cannot be those of a topic.
     """
+    for what in (channel.topic, schema.name):
+        # No ROS name has them, and they end lines, files' names and C's strings.
+        if not what or not what.isprintable():
+            raise BagError(
+                f"topic {channel.topic!r} of type {schema.name!r}: names must be "
+                "printable characters"
+            )
     try:
-        profiles = yaml.safe_load(channel.metadata.get(_QOS_KEY, ""))
-    except yaml.YAMLError:
+        definition = schema.data.decode()
+    except UnicodeDecodeError:
+        raise BagError(f"topic {channel.topic}: its definition is no text") from None
+    try:
+        profiles = read_yaml(channel.metadata.get(_QOS_KEY, ""))
+    except YamlError:
         profiles = None
     return BagTopic(
         name=channel.topic,
         type_name=schema.name,
-        offered_qos=tuple(
-            profile
-            for profile in (profiles if isinstance(profiles, list) else ())
-            if isinstance(profile, Mapping)
-        ),
+        offered_qos=known_profiles(profiles),
         type_hash=channel.metadata.get(_TYPE_HASH_KEY, ""),
-        definition=schema.data.decode(),
+        definition=definition,
         encoding=channel.message_encoding,
         count=count,
+    )
+
+
+def known_profiles(profiles: Any) -> tuple[OfferedQos, ...]:
+    """Return those of the profiles, as read from YAML, that can be understood."""
+    return tuple(
+        profile
+        for profile in (profiles if isinstance(profiles, list) else ())
+        if isinstance(profile, Mapping)
     )

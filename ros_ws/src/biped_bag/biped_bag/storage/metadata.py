@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-import yaml
+import msgspec
 
 from biped_bag.errors import BagError
-from biped_bag.storage.contents import BagTopic
+from biped_bag.storage.contents import BagTopic, known_profiles
 from biped_common.atomic_file import atomic_file
+from biped_common.plain_yaml import YamlError, read_yaml_file, yaml_text
 
 FILE_NAME = "metadata.yaml"
 OWN_RECORD = "rosbag2"
@@ -93,11 +94,8 @@ def metadata_text(metadata: BagMetadata, *, with_root: bool = True) -> str:
         "custom_data": dict(metadata.custom) or None,
         "ros_distro": metadata.ros_distro,
     }
-    return yaml.dump(
-        {_ROOT: content} if with_root else content,
-        Dumper=_NoAliases,
-        sort_keys=False,
-    )
+    # rosbag2 knows no aliases.
+    return yaml_text({_ROOT: content} if with_root else content)
 
 
 def write_metadata(folder: Path, metadata: BagMetadata) -> None:
@@ -114,28 +112,27 @@ def read_metadata(folder: Path) -> BagMetadata:
     """
     path = folder / FILE_NAME
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))[_ROOT]
-        return BagMetadata(
-            topics=[_topic_of(t) for t in content["topics_with_message_count"]],
-            files=[
-                FileInfo(
-                    path=str(file["path"]),
-                    start_ns=(
-                        start := file["starting_time"]["nanoseconds_since_epoch"]
-                    ),
-                    end_ns=start + file["duration"]["nanoseconds"],
-                    message_count=file["message_count"],
-                )
-                for file in content["files"]
-            ],
-            custom=dict(content.get("custom_data") or {}),
-            ros_distro=str(content.get("ros_distro") or ""),
-        )
+        root = msgspec.convert(read_yaml_file(path), dict[str, Any])
+        content = msgspec.convert(root.get(_ROOT), _Content)
     except OSError as error:
         raise BagError(f"{path}: cannot be read ({error.strerror})") from None
-    except (yaml.YAMLError, ValueError, LookupError, TypeError) as error:
-        reason = " ".join(str(error).split())
-        raise BagError(f"{path}: is no metadata of a bag ({reason})") from None
+    except (YamlError, msgspec.ValidationError) as error:
+        raise BagError(f"{path}: is no metadata of a bag ({error})") from None
+    return BagMetadata(
+        topics=[_topic_of(topic) for topic in content.topics_with_message_count],
+        files=[
+            FileInfo(
+                path=file.path,
+                start_ns=file.starting_time.nanoseconds_since_epoch,
+                end_ns=file.starting_time.nanoseconds_since_epoch
+                + file.duration.nanoseconds,
+                message_count=file.message_count,
+            )
+            for file in content.files
+        ],
+        custom={key: str(value) for key, value in (content.custom_data or {}).items()},
+        ros_distro=content.ros_distro or "",
+    )
 
 
 def _topic_content(topic: BagTopic) -> dict[str, Any]:
@@ -151,19 +148,52 @@ def _topic_content(topic: BagTopic) -> dict[str, Any]:
     }
 
 
-def _topic_of(content: Mapping[str, Any]) -> BagTopic:
-    about = content["topic_metadata"]
+def _topic_of(content: _Topic) -> BagTopic:
+    about = content.topic_metadata
     return BagTopic(
-        name=about["name"],
-        type_name=about["type"],
-        offered_qos=tuple(about.get("offered_qos_profiles") or ()),
-        type_hash=about.get("type_description_hash", ""),
-        count=content["message_count"],
+        name=about.name,
+        type_name=about.type,
+        offered_qos=known_profiles(about.offered_qos_profiles),
+        type_hash=about.type_description_hash,
+        count=content.message_count,
     )
 
 
-class _NoAliases(yaml.SafeDumper):
-    """Writes equal values out in full: rosbag2 knows no YAML anchors."""
+# -- what is read of metadata.yaml -----------------------------------------------------
 
-    def ignore_aliases(self, data: Any) -> bool:
-        return True
+_Count = Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)]
+_Nanoseconds = Annotated[int, msgspec.Meta(ge=-(2**63), le=2**63 - 1)]
+
+
+class _Moment(msgspec.Struct):
+    nanoseconds_since_epoch: _Nanoseconds
+
+
+class _Duration(msgspec.Struct):
+    nanoseconds: _Nanoseconds
+
+
+class _File(msgspec.Struct):
+    path: str
+    starting_time: _Moment
+    duration: _Duration
+    message_count: _Count
+
+
+class _TopicMetadata(msgspec.Struct):
+    name: str
+    type: str
+    offered_qos_profiles: Any = None
+    type_description_hash: str = ""
+
+
+class _Topic(msgspec.Struct):
+    topic_metadata: _TopicMetadata
+    message_count: _Count
+
+
+class _Content(msgspec.Struct):
+    topics_with_message_count: list[_Topic]
+    files: list[_File]
+    custom_data: dict[str, Any] | None = None
+    ros_distro: str | None = None

@@ -5,24 +5,33 @@ recorded. What failures do:
     no such path, empty, another format: BagError says which.
     cut off, damaged bytes, metadata.yaml missing or at odds with the data: BagError
         that names `biped bag recover`; nothing is read or repaired then.
+    more than a bound at once: BagError says what of, and the bound.
 """
 
 from __future__ import annotations
 
-import heapq
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from mcap.reader import SeekingReader
-from mcap.records import Attachment, Metadata
-from mcap.summary import Summary
+from mcap.records import Attachment, McapRecord, Metadata
 
 from biped_bag.errors import BagError
-from biped_bag.storage.contents import BagMessage, BagTopic, message_of, topic_of
-from biped_bag.storage.integrity import DAMAGE, DamagedFileError, sound_summary
+from biped_bag.storage.contents import BagMessage, BagTopic, topic_of
+from biped_bag.storage.integrity import DamagedFileError, SoundFile, sound_file
 from biped_bag.storage.layout import broken, find_files
+from biped_bag.storage.mcap_record import (
+    RECORD_HEADER,
+    DamagedRecordError,
+    parsed,
+    place_of,
+)
+from biped_bag.storage.message_order import Source, in_order
 from biped_bag.storage.metadata import FILE_NAME, BagMetadata, FileInfo
+from biped_bag.storage.summary import check_sizes
+
+MOST_RECORD_BYTES = 16 * 2**20
+"""Of all MCAP metadata records that are read at once; that of a walk has 500 bytes."""
 
 
 class BagReader:
@@ -40,13 +49,18 @@ class BagReader:
         self.path = path
         self.files, self._told = find_files(path)
         self.topics: dict[str, BagTopic] = {}
+        self._found: dict[Path, SoundFile] = {}
         held = BagMetadata()
         for file in self.files:
             try:
-                summary, statistics = sound_summary(file)
+                found = self._found[file] = sound_file(file)
+                self._check_sizes()
             except DamagedFileError as error:
                 raise broken(path, str(error)) from None
-            self._add_topics(file, summary, statistics.channel_message_counts)
+            except DamagedRecordError as error:
+                raise BagError(f"{path}: {error}") from None
+            self._add_topics(file, found)
+            statistics = found.statistics
             held.files.append(
                 FileInfo(
                     file.name,
@@ -87,11 +101,22 @@ class BagReader:
             topics: names; None takes all.
             start_ns: log time to start at.
             end_ns: log time to end before.
+
+        Raises:
+            BagError: a chunk is damaged, or more messages overlap than are held.
         """
-        return heapq.merge(
-            *(self._messages_of(file, topics, start_ns, end_ns) for file in self.files),
-            key=lambda message: message.log_ns,
-        )
+        sources = []
+        for file, found in self._found.items():
+            names = {
+                number: channel.topic
+                for number, channel in found.summary.channels.items()
+                if topics is None or channel.topic in topics
+            }
+            sources.append(Source(file, names, tuple(found.summary.chunks)))
+        try:
+            yield from in_order(sources, start_ns, end_ns)
+        except DamagedRecordError as error:
+            raise broken(self.path, f"{self.path}: damaged ({error})") from None
 
     def chosen(self, topics: Collection[str] | None) -> list[str]:
         """Return the names of the topics that a user chose; all for None.
@@ -106,46 +131,63 @@ class BagReader:
         return [name for name in self.topics if topics is None or name in topics]
 
     def records(self, name: str | None = None) -> Iterator[Metadata]:
-        """Yield the MCAP metadata records, of this name or all, in their order."""
-        for file in self.files:
-            with file.open("rb") as stream:
-                for record in SeekingReader(stream).iter_metadata():
-                    if name in (None, record.name):
-                        yield record
+        """Yield the MCAP metadata records, of this name or all, in their order.
+
+        Raises:
+            BagError: one is damaged, or all together are more than is read.
+        """
+        size = 0
+        for record in self._indexed(lambda found: found.summary.metadata):
+            if isinstance(record, Metadata) and name in (None, record.name):
+                size += sum(
+                    len(key) + len(text) for key, text in record.metadata.items()
+                )
+                if size > MOST_RECORD_BYTES:
+                    raise BagError(
+                        f"{self.path}: metadata records of more than "
+                        f"{MOST_RECORD_BYTES} characters"
+                    )
+                yield record
 
     def attachments(self) -> Iterator[Attachment]:
-        """Yield the attachments, in their order."""
-        for file in self.files:
+        """Yield the attachments, in their order.
+
+        Raises:
+            BagError: one is damaged.
+        """
+        for record in self._indexed(lambda found: found.summary.attachments):
+            if isinstance(record, Attachment):
+                yield record
+
+    def _indexed(
+        self, index: Callable[[SoundFile], Sequence[tuple[int, int]]]
+    ) -> Iterator[McapRecord | None]:
+        """Yield the records to which an index of the files leads."""
+        for file, found in self._found.items():
             with file.open("rb") as stream:
-                yield from SeekingReader(stream).iter_attachments()
+                for at, end in index(found):
+                    stream.seek(at)
+                    try:
+                        head = stream.read(RECORD_HEADER.size)
+                        place = place_of(head, 0, end - at)
+                        yield parsed(place.opcode, stream.read(place.end - place.body))
+                    except DamagedRecordError as error:
+                        raise broken(
+                            self.path, f"{file}: the record at byte {at}: {error}"
+                        ) from None
 
-    def _messages_of(
-        self,
-        file: Path,
-        topics: Collection[str] | None,
-        start_ns: int | None,
-        end_ns: int | None,
-    ) -> Iterator[BagMessage]:
-        with file.open("rb") as stream:
-            found = SeekingReader(stream, validate_crcs=True).iter_messages(
-                topics=topics, starting_at=start_ns, ending_before=end_ns
-            )
-            try:
-                for _, channel, message in found:
-                    yield message_of(channel.topic, message)
-            except DAMAGE as error:
-                raise broken(self.path, f"{file}: damaged ({error})") from None
-
-    def _add_topics(
-        self, file: Path, summary: Summary, counts: Mapping[int, int]
-    ) -> None:
-        for channel in summary.channels.values():
-            schema = summary.schemas.get(channel.schema_id)
+    def _add_topics(self, file: Path, found: SoundFile) -> None:
+        counts = found.statistics.channel_message_counts
+        for channel in found.summary.channels.values():
+            schema = found.summary.schemas.get(channel.schema_id)
             if schema is None:
                 raise BagError(
-                    f"{file}: topic {channel.topic} has no message definition"
+                    f"{file}: topic {channel.topic!r} has no message definition"
                 )
-            topic = topic_of(channel, schema, counts.get(channel.id, 0))
+            try:
+                topic = topic_of(channel, schema, counts.get(channel.id, 0))
+            except BagError as error:
+                raise BagError(f"{file}: {error}") from None
             before = self.topics.setdefault(topic.name, replace(topic, count=0))
             if before.type_name != topic.type_name:
                 raise BagError(
@@ -153,6 +195,13 @@ class BagReader:
                     f"but {before.type_name} before"
                 )
             self.topics[topic.name] = replace(before, count=before.count + topic.count)
+
+    def _check_sizes(self) -> None:
+        summaries = [found.summary for found in self._found.values()]
+        check_sizes(
+            sum(summary.size for summary in summaries),
+            sum(summary.text_size for summary in summaries),
+        )
 
     def _compare_with_metadata(self) -> None:
         for told in [] if self._told is None else self._told.topics:

@@ -23,9 +23,8 @@ from biped_bag.verbs.bag import add_bag_verb
 from biped_bag.verification.learner import recorded_session
 from biped_bag.verification.report import Verdict, Verification, WalkCheck
 from biped_bag.verification.verify import verify
-from biped_bag.verification.walks import WANTED
+from biped_bag.verification.walks import WANTED, ImpossibleWalkError
 from biped_common.command_line import add_json_option, print_json
-from msgs_json.wire import MalformedMessageError
 
 _STATUS = {
     Verdict.VERIFIED: 0,
@@ -61,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     )
     try:
         found = verify(session, ((m.topic, m.data) for m in bag.messages(WANTED)))
-    except MalformedMessageError as error:
+    except ImpossibleWalkError as error:
         raise BagError(f"{options.bag}: {error}") from None
     if options.json:
         print_json(found.as_mapping())
@@ -84,6 +83,11 @@ def _print(found: Verification) -> None:
             )
         if walk.not_checked is not None:
             print(f"  not checked: {walk.not_checked}")
+    refused = sum(walk.refused for walk in found.walks)
+    if refused:
+        print(f"passed over: {refused} corrections that the trajectory refuses")
+    for topic, count in sorted(found.not_understood.items()):
+        print(f"passed over: {count} messages on {topic} that no node understands")
     costs = [walk.cost for walk in found.walks if walk.cost is not None]
     for source in sorted({cost.source for cost in costs}):
         chosen = [cost for cost in costs if cost.source == source]

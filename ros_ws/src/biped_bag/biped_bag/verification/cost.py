@@ -51,7 +51,7 @@ def recomputed_cost(walk: RecordedWalk, settings: CostSettings) -> CostCheck | N
         settings: of the learner that computed the recorded cost.
     """
     result = walk.result
-    if result is None or result.cost is None:
+    if result is None or result.cost is None or result.control_ticks == 0:
         return None
     measured = _complete(walk, result.control_ticks)
     if measured is None:
@@ -79,9 +79,11 @@ def _complete(
     walk: RecordedWalk, control_ticks: int
 ) -> dict[str, NDArray[np.float64]] | None:
     """Return the (ticks, m) values of each topic, if no control tick is missing."""
-    every_tick = np.arange(1, control_ticks + 1)
     none = Samples(np.array([], dtype=np.int64), np.array([]))
     found = {topic: walk.samples.get(topic, none) for topic in MEASURED}
+    if any(len(samples.control_ticks) != control_ticks for samples in found.values()):
+        return None
+    every_tick = np.arange(1, control_ticks + 1)
     if any(
         not np.array_equal(samples.control_ticks, every_tick)
         for samples in found.values()

@@ -5,13 +5,12 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-import yaml
-
 from biped_bag.errors import BagError
 from biped_bag.records import FROM_NOTHING, RUN_RECORD
 from biped_bag.storage.reader import BagReader
+from biped_common.plain_yaml import read_yaml
 from biped_common.settings import SettingsError, from_mapping
-from learner_node.checkpoint import CheckpointError, read_checkpoint
+from learner_node.checkpoint import CheckpointError, read_checkpoint, taking_over
 from learner_node.walking.session import LearningSession
 from learner_node.walking.settings import LearnerSettings
 from trajectory_node.settings import GaitSettings
@@ -31,11 +30,12 @@ def recorded_session(bag: BagReader) -> LearningSession:
             "and which seed the run began"
         )
     try:
-        values = yaml.safe_load(record.metadata["settings"])
+        values = read_yaml(record.metadata["settings"])
         gait, learner = values["gait"], values["learner"]
         seed, begins_with = int(record.metadata["seed"]), record.metadata["begins_with"]
-    except (KeyError, TypeError, ValueError, yaml.YAMLError) as error:
-        raise BagError(f"{bag.path}: its record {RUN_RECORD}: {error!r}") from None
+    except (KeyError, TypeError, ValueError) as error:
+        reason = " ".join(repr(error).split())[:200]
+        raise BagError(f"{bag.path}: its record {RUN_RECORD}: {reason}") from None
     try:
         walk_ticks = from_mapping(GaitSettings, gait).walk_ticks
         settings = from_mapping(LearnerSettings, learner)
@@ -60,7 +60,8 @@ def _restore(session: LearningSession, bag: BagReader, name: str) -> None:
         file = Path(folder) / "memory.npz"
         file.write_bytes(attachment.data)
         try:
-            session.restore(*read_checkpoint(file))
-        except (CheckpointError, KeyError, TypeError, ValueError) as error:
-            reason = " ".join(str(error).split()).replace(str(file), name)
+            with taking_over(file):
+                session.restore(*read_checkpoint(file))
+        except CheckpointError as error:
+            reason = str(error).replace(str(file), name)
             raise BagError(f"{bag.path}: attachment {reason}") from None

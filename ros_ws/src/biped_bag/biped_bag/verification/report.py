@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from typing import Any
 
@@ -57,6 +58,9 @@ class WalkCheck:
     """Those that came out bit for bit."""
     differences: int = 0
     first_difference: Difference | None = None
+    refused: int = 0
+    """Corrections that the trajectory refuses, since they are for no observation, out
+    of range, or beside the learner's; they change nothing."""
     not_checked: str | None = None
     """Why some or all corrections were not compared."""
     cost: CostCheck | None = None
@@ -94,6 +98,8 @@ class Verification:
     """All walks of a bag, checked."""
 
     walks: tuple[WalkCheck, ...]
+    not_understood: Mapping[str, int] = field(default_factory=dict)
+    """Messages that no node understands, by topic; they change nothing."""
 
     @property
     def corrections(self) -> int:
@@ -126,5 +132,6 @@ class Verification:
             "corrections": self.corrections,
             "identical": self.identical,
             "differences": self.differences,
+            "not_understood": dict(self.not_understood),
             "walks": [asdict(walk) for walk in self.walks],
         }

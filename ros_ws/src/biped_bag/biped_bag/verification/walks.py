@@ -6,6 +6,7 @@ they were sent: a walk is put together by stamps, once the walk after it has end
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -13,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_bag.errors import BagError
 from biped_description.joints import JOINT_NAMES
 from biped_ros.cdr import MessageTemplate, string_text
 from biped_ros.messages import (
@@ -43,6 +45,17 @@ WANTED = (
 """All topics that `recorded_walks` uses."""
 
 
+# Of what waits for its walk; a walk has at most 255,000 control ticks.
+_MOST_OBSERVATIONS = 30_000
+_MOST_WAITING = 100_000
+_WALKS_WAITING = 4
+_MOST_OF_ONE = 32
+
+
+class ImpossibleWalkError(BagError):
+    """A recorded walk cannot have been walked; the text says which, and why."""
+
+
 class Samples(NamedTuple):
     """The messages of a 500 Hz topic within a walk, by control tick."""
 
@@ -59,13 +72,15 @@ class RecordedWalk:
     number: int
     """1 for the bag's first."""
     observations: list[Observation]
-    result: EpisodeResult | None = None
-    status: LearnerStatus | None = None
-    """What the learner had last said of itself when the walk began."""
-    learners: set[str] = field(default_factory=set)
-    """Names of those that took part."""
-    corrections: dict[int, NDArray[np.float64]] = field(default_factory=dict)
-    """(2,) dx and dy [m], by clock tick."""
+    results: list[EpisodeResult] = field(default_factory=list)
+    """The learner's; more of them where strangers spoke, too."""
+    statuses: dict[str, LearnerStatus] = field(default_factory=dict)
+    """What learners had last said of themselves when the walk began, by name."""
+    heard: list[str] = field(default_factory=list)
+    """Names of learners that said they take part, in order, at its beginning and in
+    it."""
+    corrections: dict[int, list[NDArray[np.float64]]] = field(default_factory=dict)
+    """(2,) dx and dy [m], by clock tick; several where strangers spoke, too."""
     samples: dict[str, Samples] = field(default_factory=dict)
     """By topic of MEASURED."""
 
@@ -74,24 +89,37 @@ class RecordedWalk:
         """Number of the walk as the simulation counts."""
         return self.observations[0].episode
 
+    @property
+    def result(self) -> EpisodeResult | None:
+        """The first result that is about what the robot walked, or else the first."""
+        walked = self.observations[-1].trajectory_sha256
+        about = [each for each in self.results if each.trajectory_sha256 == walked]
+        return next(iter((*about, *self.results)), None)
 
-def recorded_walks(messages: Iterable[tuple[str, bytes]]) -> Iterator[RecordedWalk]:
-    """Yield the walks of a bag, in order.
 
-    Args:
-        messages: topic and serialized message, in the order recorded; topics that are
-            not WANTED are passed over.
+class RecordedWalks:
+    """The walks of a bag, and what is no part of any."""
 
-    Raises:
-        MalformedMessageError: a message is not what its topic carries.
-    """
-    gathering = _Gathering()
-    for topic, message in messages:
-        try:
-            yield from gathering.take(topic, message)
-        except MalformedMessageError as error:
-            raise MalformedMessageError(f"{topic}: {error}") from None
-    yield from gathering.rest()
+    def __init__(self, messages: Iterable[tuple[str, bytes]]) -> None:
+        """Prepare.
+
+        Args:
+            messages: topic and serialized message, in the order recorded; topics that
+                are not WANTED are passed over.
+        """
+        self._messages = messages
+        self.not_understood: Counter[str] = Counter()
+        """Messages that no node understands, and none acted on, by topic."""
+
+    def __iter__(self) -> Iterator[RecordedWalk]:
+        """Yield the walks, in order."""
+        gathering = _Gathering()
+        for topic, message in self._messages:
+            try:
+                yield from gathering.take(topic, message)
+            except MalformedMessageError:
+                self.not_understood[topic] += 1
+        yield from gathering.rest()
 
 
 class _Gathering:
@@ -100,8 +128,8 @@ class _Gathering:
     def __init__(self) -> None:
         self._walks: list[RecordedWalk] = []
         self._count = 0
-        self._status: LearnerStatus | None = None
-        self._corrections: dict[int, NDArray[np.float64]] = {}
+        self._statuses: dict[str, LearnerStatus] = {}
+        self._corrections: dict[int, list[NDArray[np.float64]]] = {}
         self._samples: dict[str, dict[int, NDArray[np.float64]]] = {
             topic: {} for topic in MEASURED
         }
@@ -124,22 +152,25 @@ class _Gathering:
             if read is None:
                 raise MalformedMessageError("not a message of the form that sim writes")
             values, clock_ticks = read
-            self._samples[topic][clock_ticks] = values
+            pool = self._samples[topic]
+            if len(pool) < _MOST_WAITING:
+                pool[clock_ticks] = values
         elif topic == topics.OBSERVATION.name:
             yield from self._observe(decode(Observation, string_text(message)))
         elif topic == topics.CORRECTION.name:
             _, clock_ticks, value_m = correction_of(message)
-            self._corrections[clock_ticks] = value_m
+            if len(self._corrections) < _MOST_WAITING:
+                given = self._corrections.setdefault(clock_ticks, [])
+                if len(given) < _MOST_OF_ONE:
+                    given.append(value_m)
         elif topic == topics.EPISODE.name:
             yield from self._end(decode(EpisodeResult, string_text(message)))
         elif topic == topics.LEARNER_STATUS.name:
-            self._status = decode(LearnerStatus, string_text(message))
-            self._take_part(self._status)
+            self._hear(decode(LearnerStatus, string_text(message)))
 
     def rest(self) -> Iterator[RecordedWalk]:
         """Yield the walks that nothing more will come for."""
-        while self._walks:
-            yield self._completed(self._walks.pop(0))
+        yield from self._completed(all_but=0)
         self._corrections.clear()
         for samples in self._samples.values():
             samples.clear()
@@ -153,27 +184,48 @@ class _Gathering:
         if last is not None and observation.clock_ticks <= last.clock_ticks:
             return  # sent twice; the nodes refuse it, too
         if last is None or observation.episode != last.episode:
+            yield from self._completed(all_but=_WALKS_WAITING)
             self._count += 1
-            self._walks.append(RecordedWalk(self._count, [], status=self._status))
-            self._take_part(self._status)
-        self._walks[-1].observations.append(observation)
+            learners = list(self._statuses)
+            walk = RecordedWalk(
+                self._count, [], statuses=dict(self._statuses), heard=learners[-1:]
+            )
+            self._walks.append(walk)
+        observations = self._walks[-1].observations
+        if len(observations) == _MOST_OBSERVATIONS:
+            raise ImpossibleWalkError(
+                f"walk {self._count}: has more than {_MOST_OBSERVATIONS} observations"
+            )
+        observations.append(observation)
 
-    def _take_part(self, status: LearnerStatus | None) -> None:
-        if self._walks and status is not None:
-            self._walks[-1].learners.add(status.instance)
+    def _hear(self, status: LearnerStatus) -> None:
+        # The one that spoke last stands last.
+        self._statuses.pop(status.instance, None)
+        self._statuses[status.instance] = status
+        if len(self._statuses) > _MOST_OF_ONE:
+            del self._statuses[next(iter(self._statuses))]
+        if self._walks:
+            heard = self._walks[-1].heard
+            if heard[-1:] != [status.instance] and len(heard) < _MOST_WAITING:
+                heard.append(status.instance)
 
     def _end(self, result: EpisodeResult) -> Iterator[RecordedWalk]:
         for walk in self._walks:
-            if walk.result is None and walk.episode == result.episode:
-                walk.result = result
-        while len(self._walks) > 1 and self._walks[1].result is not None:
-            yield self._completed(self._walks.pop(0))
+            if walk.episode == result.episode and len(walk.results) < _MOST_OF_ONE:
+                walk.results.append(result)
+        while len(self._walks) > 1 and self._walks[1].results:
+            yield from self._completed(all_but=len(self._walks) - 1)
 
-    def _completed(self, walk: RecordedWalk) -> RecordedWalk:
-        """Hand the walk all messages up to its last observation."""
-        first = walk.observations[0]
-        begin = first.clock_ticks - first.control_tick
-        end = walk.observations[-1].clock_ticks
+    def _completed(self, all_but: int) -> Iterator[RecordedWalk]:
+        """Yield the oldest walks, each with all messages up to its last observation."""
+        while len(self._walks) > all_but:
+            walk = self._walks.pop(0)
+            self._complete(walk)
+            yield walk
+
+    def _complete(self, walk: RecordedWalk) -> None:
+        first, last = walk.observations[0], walk.observations[-1]
+        begin, end = first.clock_ticks - first.control_tick, last.clock_ticks
         walk.corrections = {
             tick: self._corrections.pop(tick)
             for tick in sorted(self._corrections)
@@ -188,4 +240,3 @@ class _Gathering:
                 walk.samples[topic] = Samples(
                     control_ticks[inside], np.array(rows)[inside]
                 )
-        return walk

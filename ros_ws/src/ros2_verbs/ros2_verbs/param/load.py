@@ -9,12 +9,13 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
-import yaml
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 
+from biped_common.plain_yaml import YamlError, read_yaml_file
 from ros2_verbs.errors import VerbError
 from ros2_verbs.graph.names import NodeName
 from ros2_verbs.param.services import (
@@ -124,11 +125,10 @@ def parameters_from_file(
 
 
 def _read(path: str) -> dict[str, Any]:
-    with open(path) as file:
-        try:
-            nodes = yaml.safe_load(file)
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
-            raise VerbError(f"{path}: is no YAML: {error}") from None
+    try:
+        nodes = read_yaml_file(Path(path))
+    except YamlError as error:
+        raise VerbError(f"{path}: is no YAML: {error}") from None
     if not isinstance(nodes, dict):
         raise VerbError(f"{path}: must map node names to {_KEY}")
     return nodes
