@@ -15,6 +15,7 @@ from rclpy.task import Future
 from biped_common.command_line import WRONG_INPUT
 from biped_common.errors import BipedError
 from biped_ros.guarded import GuardedNode
+from biped_ros.process import bound_memory
 
 REFUSED = 4
 # The events executor cannot be interrupted in an endless spin, so it spins in turns.
@@ -28,6 +29,7 @@ def run_node(make: Callable[[], GuardedNode]) -> int:
         The exit status: 0 after an orderly end, 2 for wrong input, 4 when the node gave
         up.
     """
+    bound_memory()
     # Signals end the loop below, not the middle of a callback.
     try:
         rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
