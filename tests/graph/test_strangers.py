@@ -166,16 +166,16 @@ def up(domain, folder, *options):
 
 
 def ended(process):
-    """Return exit status and what was reported."""
-    out, _ = process.communicate(timeout=TIMEOUT_S)
-    return process.returncode, out
+    """Return the exit status, after all that is said has been read."""
+    process.communicate(timeout=TIMEOUT_S)
+    return process.returncode
 
 
 def disturb(process, stranger):
     """Have a stranger come, be named on the screen, and leave."""
     stranger.stdin.write("go\n")
     stranger.stdin.flush()
-    assert any("should be by one" in line for line in process.stderr)
+    assert any(NO_NODE in line for line in process.stderr)
     stranger.terminate()
 
 
@@ -189,9 +189,8 @@ def test_a_forged_success_is_no_success(domain, tmp_path):
         up(domain, tmp_path, "--greedy") as process,
     ):
         disturb(process, stranger)
-        status, out = ended(process)
+        status = ended(process)
     assert status == 1
-    assert NO_NODE in out
 
 
 def test_a_learner_that_a_stranger_calls_learned_learns_on(
@@ -203,9 +202,8 @@ def test_a_learner_that_a_stranger_calls_learned_learns_on(
         up(domain, tmp_path, *options) as process,
     ):
         disturb(process, stranger)
-        status, out = ended(process)
+        status = ended(process)
     assert status == 1
-    assert NO_NODE in out
     run = TrainingRun.load(tmp_path / "memory.npz")
     run.close()
     assert hashes(run.session) == undisturbed
