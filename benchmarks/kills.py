@@ -127,7 +127,9 @@ class KilledRun:
                 continue  # it is just being started
             os.kill(processes.pop(victim), SIGKILL)
             self._tally.kills += 1
-            print(f"{self._tally.kills:3d}  {victim}, {pause_s:.1f} s later", flush=True)
+            print(
+                f"{self._tally.kills:3d}  {victim}, {pause_s:.1f} s later", flush=True
+            )
             if victim == SUPERVISOR:
                 self._count_orphans(list(processes.values()))
             self._look_at_checkpoint()

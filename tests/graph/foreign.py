@@ -2,12 +2,11 @@
 
     python -m tests.graph.foreign ATTACK    # on ROS_DOMAIN_ID
 
-It says `ready`, listens, and begins to attack with the first line on stdin; with SIGTERM
-it leaves. Eclipse Cyclone DDS instead of Fast DDS: nothing of the project is asked
-whether a message may be sent.
+It says `ready`, listens, and begins to attack with the first line on stdin; with
+SIGTERM it leaves. Eclipse Cyclone DDS instead of Fast DDS: nothing of the project is
+asked whether a message may be sent.
 """
 
-import itertools
 import os
 import signal
 import sys
@@ -31,8 +30,8 @@ from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
 from msgs_json.wire import decode, encode
 
-# As the nodes with LOCALHOST, on the loopback interface. Fast DDS does not understand the
-# farewells of Cyclone DDS: who leaves is there until his lease ends, by default for 10 s.
+# As the nodes with LOCALHOST, on the loopback interface. Fast DDS does not understand
+# how Cyclone DDS says farewell: who leaves is there until his lease ends (else 10 s).
 LOOPBACK = """<CycloneDDS><Domain>
 <General><Interfaces>
 <NetworkInterface address="127.0.0.1" multicast="true"/>
@@ -42,6 +41,7 @@ LOOPBACK = """<CycloneDDS><Domain>
 TICKS_AHEAD = 10**9
 FLOOD_HZ = 5000
 FLOOD_TURN_S = 0.02
+FORGED_PARAMETERS = 16_000_000
 IDLE_S = 0.001
 
 
@@ -246,9 +246,7 @@ def second_segments(stranger):
             )
         return segment
 
-    return answering(
-        stranger, topics.WAIST_REFERENCE, topics.WAIST_REFERENCE, answer
-    )
+    return answering(stranger, topics.WAIST_REFERENCE, topics.WAIST_REFERENCE, answer)
 
 
 def flood(stranger):
@@ -275,26 +273,24 @@ def flood(stranger):
 
 def forged_request(stranger):
     """A request for so many parameters that a machine has no room for them."""
-    requests = itertools.count()
+    writer = stranger.writer_of(
+        f"rq/{topics.TRAJECTORY_NODE}/set_parametersRequest",
+        ParameterNames,
+        topics.EPISODE,
+    )
+    request = ParameterNames(bytes(FORGED_PARAMETERS))
 
     def turn():
-        if next(requests) == 0:
-            writer = stranger.writer_of(
-                f"rq/{topics.TRAJECTORY_NODE}/set_parametersRequest",
-                ParameterNames,
-                topics.EPISODE,
-            )
-            while not writer.get_matched_subscriptions():
-                time.sleep(IDLE_S)
-            writer.write(ParameterNames([0] * FORGED_PARAMETERS))
+        if writer.get_matched_subscriptions():
+            writer.write(request)
             writer.wait_for_acks(duration(seconds=20))
             print("taken", flush=True)
+            sys.stdin.read()
         time.sleep(IDLE_S)
 
     return turn
 
 
-FORGED_PARAMETERS = 20_000_000
 ATTACKS = {
     attack.__name__: attack
     for attack in (

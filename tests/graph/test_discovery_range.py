@@ -1,12 +1,12 @@
-"""LOCALHOST keeps strangers out, SUBNET lets them in: two network namespaces as hosts."""
+"""LOCALHOST keeps other hosts out, SUBNET lets them in: two network namespaces."""
 
 import os
 import subprocess
 import sys
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 
 import pytest
-from tests.graph.domains import own_domain
 
 from biped_ros.environment import node_environment
 
@@ -104,7 +104,8 @@ def test_with_localhost_the_sockets_for_messages_are_bound_to_loopback(hosts, do
     first_unicast_port = 7400 + 250 * domain + 10
     with program(hosts[0], "LOCALHOST", domain, "say", TIMEOUT_S) as process:
         ports = {}
-        for line in open(f"/proc/{process.pid}/net/udp").readlines()[1:]:
+        table = Path(f"/proc/{process.pid}/net/udp").read_text()
+        for line in table.splitlines()[1:]:
             address, port = line.split()[1].split(":")
             ports[int(port, 16)] = bytes.fromhex(address)[::-1]
     listening = {p: a for p, a in ports.items() if 0 <= p - first_unicast_port < 240}

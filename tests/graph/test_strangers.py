@@ -1,8 +1,8 @@
 """Strangers on the graph change no memory and no walk: they are named, and walked past.
 
-Some are programs of another middleware (`foreign.py`), some are what people leave running
-by mistake. Each comes while the biped learns, and leaves; then memory and trajectories
-must be those of a run that nobody disturbed.
+Some are programs of another middleware (`foreign.py`), some are what people leave
+running by mistake. Each comes while the biped learns, and leaves; then memory and
+trajectories must be those of a run that nobody disturbed.
 """
 
 import os
@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from tests.graph.clients import (
@@ -76,7 +77,8 @@ def module(domain, *arguments):
 
 def named(message):
     """What /diagnostics say of those who publish beside an owner."""
-    return " ".join(s.message for s in message.status if "should be by one" in s.message)
+    texts = [status.message for status in message.status]
+    return " ".join(text for text in texts if "should be by one" in text)
 
 
 def learned_beside(domain, stranger):
@@ -207,3 +209,26 @@ def test_a_learner_that_a_stranger_calls_learned_learns_on(
     run = TrainingRun.load(tmp_path / "memory.npz")
     run.close()
     assert hashes(run.session) == undisturbed
+
+
+# -- what a node takes of the machine --------------------------------------------------
+
+
+def peak_mb(process):
+    """Return the most memory that a process has ever had [MB]."""
+    for line in Path(f"/proc/{process}/status").read_text().splitlines():
+        if line.startswith("VmHWM:"):
+            return int(line.split()[1]) / 1024.0
+    raise AssertionError("no such line")
+
+
+def test_a_request_that_claims_millions_of_parameters_fills_no_memory(
+    domain, processes
+):
+    with foreign(domain, "forged_request") as stranger:
+        node = processes("trajectory_node.node", {})
+        stranger.stdin.write("go\n")
+        stranger.stdin.flush()
+        assert [stranger.stdout.readline() for _ in range(2)] == ["ready\n", "taken\n"]
+        assert node.poll() is None
+        assert peak_mb(node.pid) < 600.0
