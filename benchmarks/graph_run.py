@@ -18,7 +18,7 @@ from rclpy.task import Future
 from biped_bringup.supervisor.supervisor import Supervisor
 from biped_common.timing import CONTROL_PERIOD_US
 from biped_ros.environment import node_environment, private_domain
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from biped_ros.qos import qos_profile
 from msgs_json import topics
 

@@ -139,7 +139,7 @@ def _listen(
     from rclpy.experimental import EventsExecutor
     from rclpy.task import Future
 
-    from biped_ros.guarded import message_type
+    from biped_ros.messages import message_type
     from biped_ros.qos import qos_profile
     from msgs_json.topics import Topic
 

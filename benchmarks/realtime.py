@@ -105,7 +105,13 @@ class _DirectAnswer:
         self.punctuality = Punctuality()
         self.pilot = Pilot(run.walker.biped)
         self._walk = run.session.greedy()
-        self.loop = RealtimeLoop(self.pilot, 1.0, self._answer, self.punctuality)
+        self.loop = RealtimeLoop(
+            self.pilot,
+            self.reference.ticks,
+            1.0,
+            self._answer,
+            self.punctuality,
+        )
         self.result: EpisodeResult | None = None
 
     def _answer(self, observation: Observation) -> None:

@@ -48,6 +48,9 @@ class Climber(Learner):
     def penalise(self, penalty: int) -> None: ...
     def finish_subtask(self) -> None: ...
 
+    # Nothing is kept before an episode's end.
+    def give_up_episode(self) -> None: ...
+
     def finish_episode(self) -> None:
         if self._decisions >= self._record:
             self._best, self._record = self._tried, self._decisions

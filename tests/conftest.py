@@ -96,9 +96,11 @@ def training() -> Iterator[Callable[..., TrainingRun]]:
     """Make training runs, or take them from a file."""
     runs: list[TrainingRun] = []
 
-    def make(source: RunSettings | Path, seed: int = 0) -> TrainingRun:
+    def make(source: RunSettings | Path, seed: int = 0, **options: int) -> TrainingRun:
         loads = isinstance(source, Path)
-        runs.append(TrainingRun.load(source) if loads else TrainingRun(source, seed))
+        runs.append(
+            TrainingRun.load(source) if loads else TrainingRun(source, seed, **options)
+        )
         return runs[-1]
 
     yield make

@@ -3,7 +3,7 @@
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms, EpisodeResult
 from msgs_json.learner_status import LearnerStatus
-from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.observation import Observation, PhaseFlags, StampedPhase
 from msgs_json.walk_plan import GaitPhase, WalkPlan
 
 PHASE = PhaseFlags(
@@ -11,6 +11,14 @@ PHASE = PhaseFlags(
     planned_double_support=False,
     measured_right_support=True,
     measured_double_support=False,
+    step_index=2,
+)
+STAMPED_PHASE = StampedPhase(
+    clock_ticks=1040,
+    planned_right_support=True,
+    planned_double_support=False,
+    measured_right_support=True,
+    measured_double_support=True,
     step_index=2,
 )
 OBSERVATION = Observation(
@@ -56,7 +64,6 @@ RESULT = EpisodeResult(
 )
 STATUS = LearnerStatus(
     instance="learner-1",
-    active=True,
     seed=0,
     target_time_s=1.88,
     subtask=0,
@@ -69,6 +76,7 @@ STATUS = LearnerStatus(
     schedule_complete=False,
     learned=False,
     frozen=False,
+    given_up={EndCause.LATE: 2, EndCause.RESET: 1},
     simulated_s=63.2,
     memory_sha256="0a",
     trajectory_sha256="6f1c",

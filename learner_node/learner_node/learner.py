@@ -9,6 +9,9 @@ decision a learner is called in this order:
     reward(...), penalise(...)       where the outcome says so
     finish_subtask()                 when a part of the task is mastered
     finish_episode()                 at the end; then begin_episode again
+
+Where something from outside ends an episode, `give_up_episode()` takes the place of the
+last three.
 """
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ class Learner(Protocol):
     """Learns a `Problem` from what it is told; knows no task."""
 
     rng: np.random.Generator
-    """Source of every random choice; saved in checkpoints by who owns the learner."""
+    """Source of every random choice; saved and set back by who owns the learner."""
 
     def begin_episode(self, inputs: Inputs) -> None:
         """Take the (Ns,) inputs of an episode's first decision."""
@@ -57,6 +60,12 @@ class Learner(Protocol):
 
     def finish_episode(self) -> None:
         """End the episode."""
+
+    def give_up_episode(self) -> None:
+        """Become what it was before `begin_episode`, but for its `rng`.
+
+        Not after `finish_subtask`: then the episode has led somewhere.
+        """
 
     def greedy(self, inputs: Inputs) -> NDArray[np.int64] | None:
         """Return the best known action, None where nothing is known; learn nothing.

@@ -3,7 +3,8 @@
 What failures do:
     the checkpoint cannot be written: learning goes on, log and /diagnostics say so, and
         it is tried again when the next one is due; a service that asked is told.
-    a walk is joined in its middle: it is given up, neither counted nor learned from.
+    a walk is joined in its middle, or ends from outside: it is given up, neither an
+        episode nor learned from, and walked again.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.publisher import Publisher
@@ -26,18 +28,20 @@ from biped_ros.messages import correction_template
 from biped_ros.observation_gaps import ObservationGaps
 from biped_ros.process import process_name
 from biped_ros.running import run_node
+from biped_ros.sole_publisher import Publishers
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
-from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
-from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
 from msgs_json.wire import RefusedMessageError, decode, encode
 
 NAME = topics.LEARNER_NODE
 _STATUS_PERIOD_S = 1.0
+_LOOK_PERIOD_S = 0.1
+# The lease after which a killed node is off the graph (fastdds_profile.xml), and a bit.
+_PREDECESSOR_S = 7.0
 
 
 class LearnerNode(GuardedNode):
@@ -61,7 +65,7 @@ class LearnerNode(GuardedNode):
             **from_json("run_settings", settings.run_settings, dict[str, Any]),
             "learner": to_mapping(settings.learner),
         }
-        # Names sort by the time of the start: of two learners, the first stays.
+        self._started = time.monotonic()
         self.instance = f"learner-{time.time_ns()}-{process_name()}"
         self.session = LearningSession(
             settings.learner, settings.walk_ticks, settings.seed
@@ -83,36 +87,37 @@ class LearnerNode(GuardedNode):
         self._seen = ("", -1)
         self._template = correction_template()
         self._corrections: Publisher | None = None
-        self._episodes = self.publisher(topics.EPISODE)
-        self._status = self.publisher(topics.LEARNER_STATUS)
-        self.listen(topics.LEARNER_STATUS, self._on_status)
-        self.create_timer(_STATUS_PERIOD_S, self._publish_status)
         self.create_service(Trigger, f"{NAME}/save_memory", self._on_save)
         self.create_service(SetBool, f"{NAME}/freeze", self._on_freeze)
-        self._publish_status()
-        if settings.listen_s > 0.0:
-            self._listening = self.create_timer(settings.listen_s, self._listened)
-        else:
-            self._take_part()
-
-    def _listened(self) -> None:
-        """Take part, unless another learner has been heard."""
-        self._listening.cancel()
-        if self.failure is None:
-            self._take_part()
+        self._ownership = Publishers(self)
+        self._waiting = self.create_timer(settings.listen_s, self._take_part)
 
     def _take_part(self) -> None:
-        """Answer observations from now on."""
-        self._corrections = self.publisher(topics.CORRECTION)
-        self.listen_once_heard(
-            topics.OBSERVATION,
-            self._on_observation,
-            {
-                self._corrections: topics.TRAJECTORY_NODE,
-                self._episodes: topics.SIM_NODE,
-            },
-        )
-        self._publish_status()
+        """Answer observations from now on, unless another learner does.
+
+        One that was killed stays on the graph for a while. Until then this one
+        publishes nothing, so as not to disturb the other's walks.
+        """
+        self._waiting.cancel()
+        other = self._ownership.any_on(topics.CORRECTION)
+        if other is None:
+            self._corrections = self.publisher(topics.CORRECTION)
+            self._episodes = self.publisher(topics.EPISODE)
+            self._status = self.publisher(topics.LEARNER_STATUS)
+            self.create_timer(_STATUS_PERIOD_S, self._publish_status)
+            self.listen(
+                topics.OBSERVATION,
+                self._on_observation,
+                {
+                    self._corrections: topics.TRAJECTORY_NODE,
+                    self._episodes: topics.SIM_NODE,
+                },
+            )
+            self._publish_status()
+        elif time.monotonic() - self._started < _PREDECESSOR_S:
+            self._waiting = self.create_timer(_LOOK_PERIOD_S, self._take_part)
+        else:
+            self.failure = f"another learner is on this graph already: {other}"
 
     def close(self) -> None:
         """Save what was learned, unless a walk goes on or the node never took part."""
@@ -160,6 +165,8 @@ class LearnerNode(GuardedNode):
                 f"of {clock_ticks}"
             )
         self._seen = (observation.simulation, observation.clock_ticks)
+        if self.session.over(observation):
+            return
         answer = self.session.respond(observation)
         if isinstance(answer, EpisodeResult):
             self._finish(answer)
@@ -173,31 +180,20 @@ class LearnerNode(GuardedNode):
         session = self.session
         frozen = self._settings.frozen
         walked = session.tally.evaluations if frozen else session.episodes
-        # A walk that was cut short because somebody was too slow is walked again.
-        cut_short = frozen and result.end_cause in (EndCause.LATE, EndCause.PEER_SILENT)
-        enough = 0 < self._settings.max_episodes <= walked and not session.trial_due
-        self._done = enough and not cut_short
-        if self._save_due or self._done or session.episodes % every == 0:
+        enough = 0 < self._settings.max_episodes <= walked
+        self._done = enough and not session.trial_due
+        due = session.episodes % every == 0 and not result.end_cause.from_outside
+        if self._save_due or self._done or due:
             self.save()
             self._save_due = False
         self._publish_status()
         self._episodes.publish(string_message(encode(result)))
 
-    def _on_status(self, message: bytes) -> None:
-        status = decode(LearnerStatus, string_text(message))
-        if status.instance == self.instance:
-            return
-        if status.instance < self.instance:
-            self.failure = f"learner {status.instance} is on this graph already"
-        raise RefusedMessageError(
-            f"a second learner is on this graph: {status.instance} beside "
-            f"{self.instance}"
-        )
-
     def _publish_status(self) -> None:
-        status = self.session.status(
-            self.instance, active=self._corrections is not None
-        )
+        # Within a walk nothing is settled, and to hash a large memory takes too long.
+        if not self.session.walking:
+            self._settled = self.session.status(self.instance)
+        status = msgspec.structs.replace(self._settled, frozen=self.session.frozen)
         self._status.publish(string_message(encode(status)))
 
     def _on_save(

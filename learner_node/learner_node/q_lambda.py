@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.settings import Settings, setting
+from learner_node.journal import RowJournal
 from learner_node.memory import Arrays, check_memory, count_of_states
 from learner_node.problem import Problem
 from learner_node.states import NO_STATE, BasisStates, StateSettings, doubled
@@ -81,12 +82,15 @@ class QLambda:
         self._chosen = np.zeros(shape[0], dtype=np.int64)
         self._earned: float | None = None
         """What was earned since the last choice; None: nothing was said."""
+        self._journal = RowJournal()
 
     def begin_episode(self, inputs: NDArray[np.float64]) -> None:
         """Take the initial state; nothing is owed to earlier choices."""
         self.episode += 1
         self.traces[: self.states.count] = 0.0
         self._earned = None
+        self.states.mark()
+        self._journal.begin()
         self.state = self._locate(inputs)
 
     def choose(self) -> NDArray[np.int64]:
@@ -131,6 +135,14 @@ class QLambda:
             n = len(remaining)
             self.q[:n] = self.q[remaining]
             self.q[n:] = 0.0
+
+    def give_up_episode(self) -> None:
+        """Become what it was before the episode began, but for the random numbers."""
+        self._journal.undo((self.q,))
+        self.traces[: self.states.count] = 0.0
+        self.states.rewind()
+        self.episode -= 1
+        self.state = NO_STATE
 
     def greedy(self, inputs: NDArray[np.float64]) -> NDArray[np.int64] | None:
         """Return the best known action, None where no state is; learn nothing."""
@@ -187,6 +199,7 @@ class QLambda:
     def _locate(self, inputs: NDArray[np.float64]) -> int:
         k = self.states.find(inputs, create=True)
         self._make_room()
+        self._journal.visit(k, (self.q,))
         return k
 
     def _make_room(self) -> None:

@@ -118,6 +118,7 @@ class BasisStates:
         self._columns = np.zeros((n_continuous, _FIRST_CAPACITY))
         self._groups = np.zeros(_FIRST_CAPACITY, dtype=np.int64)
         self._group_of: dict[bytes, int] = {}
+        self._marked_life = self.life[:0].copy()
 
     @property
     def discrete(self) -> NDArray[np.float64]:
@@ -177,6 +178,18 @@ class BasisStates:
         ):
             self._append(discrete, center)
         self.life[: self.count] = memory["state_life"]
+
+    def mark(self) -> None:
+        """Remember which states there are, and for how long, until the next mark."""
+        self._marked_life = self.life[: self.count].copy()
+
+    def rewind(self) -> None:
+        """Drop the states made since the mark; let the others live as long as then.
+
+        Not after `age`, which forgets states.
+        """
+        self.count = len(self._marked_life)
+        self.life[: self.count] = self._marked_life
 
     def _reserve(self, capacity: int) -> None:
         while self.capacity < capacity:

@@ -11,9 +11,9 @@ class EndCause(str, Enum):
     The first is success. The next two are the penalties of Table 1. The `ik_` and
     `torque_` ones are the further failures that Section 4 names. `foot_through_floor`
     and `physics_nan` mean that the physics itself can no longer be trusted. The last
-    four come from outside: in real time, the walk failed after a deadline had been
-    missed, so that nobody knows what it would have been; who guides the robot fell
-    silent; a user asked for it; or a stranger published what only one node may.
+    four come from outside: in real time, a reference was not there when it was due, so
+    that nobody knows what the walk would have been; who guides the robot fell silent; a
+    user asked for it; or a stranger published what only one node may.
     """
 
     COMPLETED = "completed"
@@ -30,6 +30,16 @@ class EndCause(str, Enum):
     RESET = "reset"
     DISTURBED = "disturbed"
 
+    @property
+    def from_outside(self) -> bool:
+        """Whether the walk says nothing of who chose it: it is walked again."""
+        return self in _FROM_OUTSIDE
+
     def __str__(self) -> str:
         """Return the word itself."""
         return self.value
+
+
+_FROM_OUTSIDE = frozenset(
+    (EndCause.LATE, EndCause.PEER_SILENT, EndCause.RESET, EndCause.DISTURBED)
+)

@@ -50,7 +50,7 @@ class EpisodeResult(
     episode: Count
     """Number of the walk, as the simulation counts."""
     learning: bool
-    """Whether the learner learned from it; a trial is walked frozen."""
+    """Walked to learn from, not frozen; of one that ends from outside nothing is."""
     end_cause: EndCause
     """Why the walk ended."""
     control_ticks: Count

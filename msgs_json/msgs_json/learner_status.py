@@ -8,6 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from msgs_json.bounds import Count, Digest, Name, Seed
+from msgs_json.end_cause import EndCause
 
 
 class LearnerStatus(
@@ -16,14 +17,12 @@ class LearnerStatus(
     kw_only=True,
     forbid_unknown_fields=True,
     tag_field="version",
-    tag=2,
+    tag=3,
 ):
     """State of the schedule and of the memory between two episodes."""
 
     instance: Name
     """learner-START_NS-HOST:PROCESS of the one learner of the graph."""
-    active: bool
-    """Takes part; before, it listens whether another one does."""
     seed: Seed
     """Of the session's random choices."""
     target_time_s: float
@@ -48,6 +47,8 @@ class LearnerStatus(
     """The schedule is complete and a frozen greedy walk has succeeded."""
     frozen: bool
     """Learning is switched off by a user; walks are greedy."""
+    given_up: Annotated[dict[EndCause, Count], Meta(max_length=len(EndCause))]
+    """Walks that were given up, by what ended them; they are not among the episodes."""
     simulated_s: float
     """Walked in all learning episodes [s]."""
     memory_sha256: Digest

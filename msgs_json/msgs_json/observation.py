@@ -34,6 +34,13 @@ class PhaseFlags(
     """Single supports begun so far (0 before the first step)."""
 
 
+class StampedPhase(PhaseFlags, frozen=True, kw_only=True, tag=2):
+    """Support phase at a control tick, as it is published by itself."""
+
+    clock_ticks: Count
+    """Control ticks of the simulation's clock."""
+
+
 class Observation(
     msgspec.Struct,
     frozen=True,

@@ -22,6 +22,8 @@ class Topic:
     """History kept for slow subscribers; 1,000 lose nothing at 500 Hz for 2 s."""
     latched: bool = False
     """Transient local: who comes later gets the last message."""
+    owner: str | None = None
+    """The one node that may publish it, where walks or learning follow from it."""
     meaning: str = ""
     """What it carries, with units and frame."""
 
@@ -51,14 +53,19 @@ ZMP_REFERENCE = Topic(
     "geometry_msgs/msg/PointStamped",
     meaning="planned ZMP, world frame [m]",
 )
-PHASE = Topic("/biped/phase", "std_msgs/msg/String", meaning="PhaseFlags, JSON")
+PHASE = Topic("/biped/phase", "std_msgs/msg/String", meaning="StampedPhase, JSON")
 OBSERVATION = Topic(
-    "/biped/observation", "std_msgs/msg/String", depth=100, meaning="Observation, JSON"
+    "/biped/observation",
+    "std_msgs/msg/String",
+    depth=100,
+    owner=SIM_NODE,
+    meaning="Observation, JSON",
 )
 CORRECTION = Topic(
     "/biped/correction",
     "geometry_msgs/msg/Vector3Stamped",
     depth=100,
+    owner=LEARNER_NODE,
     meaning="waist correction (dx, dy), world frame [m], stamped as the observation "
     "it answers",
 )
@@ -66,6 +73,7 @@ WAIST_REFERENCE = Topic(
     "/biped/waist_reference",
     "trajectory_msgs/msg/MultiDOFJointTrajectory",
     depth=100,
+    owner=TRAJECTORY_NODE,
     meaning="waist, feet and reference ZMP per control tick, world frame [m], stamped "
     "as the observation from which on they hold",
 )
@@ -74,16 +82,22 @@ PLAN = Topic(
     "std_msgs/msg/String",
     depth=1,
     latched=True,
+    owner=TRAJECTORY_NODE,
     meaning="WalkPlan, JSON",
 )
 EPISODE = Topic(
-    "/biped/episode", "std_msgs/msg/String", depth=100, meaning="EpisodeResult, JSON"
+    "/biped/episode",
+    "std_msgs/msg/String",
+    depth=100,
+    owner=LEARNER_NODE,
+    meaning="EpisodeResult, JSON",
 )
 LEARNER_STATUS = Topic(
     "/biped/learner",
     "std_msgs/msg/String",
     depth=1,
     latched=True,
+    owner=LEARNER_NODE,
     meaning="LearnerStatus, JSON",
 )
 MARKERS = Topic(
@@ -111,3 +125,12 @@ DIAGNOSTICS = Topic(
     depth=10,
     meaning="rates, lateness, deadlines missed, messages dropped and refused",
 )
+CONTROL = (
+    OBSERVATION,
+    CORRECTION,
+    WAIST_REFERENCE,
+    PLAN,
+    EPISODE,
+    LEARNER_STATUS,
+)
+"""What walks and learning follow from; each has an owner."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -64,6 +64,8 @@ class _Watch:
     waist_velocity: tuple[float, float] = (0.0, 0.0)
     limits: LimitCounts = field(default_factory=LimitCounts)
     end_cause: EndCause | None = None
+    chance: Mapping[str, Any] = field(default_factory=dict)
+    """State of the generator before the walk, where disturbances are drawn."""
     trajectory: Any = field(default_factory=hashlib.sha256)
     """Running hash of all that was measured."""
 
@@ -136,12 +138,18 @@ class SimulatedBiped:
     def begin_walk(self, episode: int) -> Observation:
         """Put the robot back on its feet and return what it observes there.
 
-        The clock goes on by one tick, so that no two observations share a time.
+        The clock goes on by one tick, so that no two observations share a time. After
+        a walk that ended from outside the disturbances are the same as in it.
         """
         self._check_open()
         self.world.load(self._standing)
         disturbances = self.settings.disturbances
+        chance: Mapping[str, Any] = {}
         if disturbances.random:
+            last = self._watch
+            if last.end_cause is not None and last.end_cause.from_outside:
+                self._rng.bit_generator.state = last.chance
+            chance = self._rng.bit_generator.state
             self._disturbance = draw_disturbance(
                 disturbances, len(LINK_NAMES), self._rng
             )
@@ -153,6 +161,7 @@ class SimulatedBiped:
             clock_ticks=self._watch.clock_ticks + 1,
             contact=self._standing_contact,
             waist_velocity=velocity[:2],
+            chance=chance,
         )
         self._references = standing(self._start)
         self._rows.clear()
@@ -302,9 +311,14 @@ class SimulatedBiped:
             end_cause=watch.end_cause,
         )
 
-    def end(self, cause: EndCause) -> None:
-        """End the walk from outside, unless it has failed; the clock ticks once."""
-        if self._watch.end_cause is None:
+    def end(self, cause: EndCause, failed: bool = False) -> None:
+        """End the walk from outside; the clock ticks once.
+
+        Args:
+            cause: why.
+            failed: end it by this cause even if it has failed.
+        """
+        if failed or self._watch.end_cause is None:
             self._watch.end_cause = cause
         self._watch.clock_ticks += 1
 

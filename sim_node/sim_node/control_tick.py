@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from msgs_json.observation import PhaseFlags
+import msgspec
+
+from msgs_json.observation import PhaseFlags, StampedPhase
 from sim_node.contact import FloorContact
 from sim_node.joint_references import PlannedPhase
 
@@ -34,9 +36,12 @@ class ControlTick(NamedTuple):
     planned_phase: PlannedPhase
 
     @property
-    def phase(self) -> PhaseFlags:
+    def phase(self) -> StampedPhase:
         """The support phase, planned and measured."""
-        return phase_flags(self.planned_phase, self.contact)
+        flags = phase_flags(self.planned_phase, self.contact)
+        return StampedPhase(
+            clock_ticks=self.clock_ticks, **msgspec.structs.asdict(flags)
+        )
 
 
 def phase_flags(planned: PlannedPhase, contact: FloorContact) -> PhaseFlags:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 import uuid
@@ -17,6 +18,7 @@ from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import SegmentReader
 from biped_ros.running import run_node
+from biped_ros.sole_publisher import Publishers
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
@@ -28,6 +30,7 @@ from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
 from sim_node.engines import plant_of
 from sim_node.markers import MarkerPublisher
+from sim_node.pace_watch import PaceWatch
 from sim_node.pilot import Pilot, check_stance
 from sim_node.planned_walk import PlannedWalk
 from sim_node.realtime import Punctuality, RealtimeLoop
@@ -36,6 +39,9 @@ from sim_node.tick_publisher import TickPublisher
 
 NAME = topics.SIM_NODE
 _WATCH_PERIOD_S = 0.1
+# After a stranger has left, until all have found each other again.
+_CALM_S = 0.5
+_PACE_REPORTS_S = 10.0
 
 
 class SimNode(GuardedNode):
@@ -61,8 +67,13 @@ class SimNode(GuardedNode):
         self._loop: RealtimeLoop | None = None
         self._paused = False
         self._held: bytes | None = None
+        self._offered = False
+        """The present walk was begun, and no other is to be begun before its end."""
+        self._ownership = Publishers(self)
+        self._disturbed_at = -math.inf
         self._heard = time.monotonic()
         self._punctuality = Punctuality()
+        self._pace = PaceWatch(self._punctuality)
         self._observed_ns = time.monotonic_ns()
         self._ticks = TickPublisher(self, settings.publish_every_ticks)
         self._markers = MarkerPublisher(
@@ -79,6 +90,8 @@ class SimNode(GuardedNode):
         self.listen(topics.WAIST_REFERENCE, self._on_segment)
         self.listen(topics.EPISODE, self._on_episode)
         self.create_timer(_WATCH_PERIOD_S, self._watch_peers)
+        if settings.pace == "realtime":
+            self.create_timer(_WATCH_PERIOD_S, self._watch_pace)
         self.create_service(SetBool, f"{NAME}/pause", self._on_pause)
         self.create_service(Trigger, f"{NAME}/reset", self._on_reset)
 
@@ -129,6 +142,7 @@ class SimNode(GuardedNode):
         if self._settings.pace == "realtime":
             self._loop = RealtimeLoop(
                 self._pilot,
+                walk.plan.walk_ticks,
                 self._settings.realtime_factor,
                 self._publish,
                 self._punctuality,
@@ -178,6 +192,13 @@ class SimNode(GuardedNode):
         self._begin()
 
     def _begin(self) -> None:
+        """Begin the next walk, unless somebody would not follow it from its start."""
+        calm_s = time.monotonic() - self._disturbed_at
+        if self._disturbed() or calm_s < _CALM_S or not self._connected():
+            self._offered = False  # until `_watch_peers` finds all in order
+            return
+        self._offered = True
+        self._heard = time.monotonic()
         if self._loop is not None:
             self._loop.request(self._loop.begin)
         elif self._pilot is not None:
@@ -198,19 +219,28 @@ class SimNode(GuardedNode):
 
     # -- peers ---------------------------------------------------------------------
 
+    def _watch_pace(self) -> None:
+        text = self._pace.look(self._settings.realtime_factor)
+        if text is not None:
+            self.get_logger().warning(text, throttle_duration_sec=_PACE_REPORTS_S)
+            self.remark(DiagnosticStatus.WARN, "pace", text)
+
     def _watch_peers(self) -> None:
         if self._pilot is None or self._paused:
             return
-        if self._pilot.walks == 0:
-            # What is published before all are connected would be lost.
-            if self._connected():
-                self._begin()
+        if self._disturbed():
+            self._end(EndCause.DISTURBED)
+            self._offered = False
+            self._heard = self._disturbed_at = time.monotonic()
             return
+        if not self._offered:
+            self._begin()
         silent_s = time.monotonic() - self._heard
         if silent_s < self._settings.timeout_s:
             return
         peer = self._silent_peer()
-        text = f"{peer} has been silent for {silent_s:.1f} s; the walk is given up"
+        what = "the walk is given up" if self._offered else "no walk can begin"
+        text = f"{peer} has been silent for {silent_s:.1f} s; {what}"
         self.get_logger().error(text)
         self.remark(DiagnosticStatus.ERROR, "silent peer", text)
         # A walk cut short is reported first; if nobody reacts, a new one is offered.
@@ -218,18 +248,39 @@ class SimNode(GuardedNode):
         if not self._end(EndCause.PEER_SILENT):
             self._begin()
 
+    def _disturbed(self) -> bool:
+        """Return whether a stranger publishes on any control topic."""
+        found = False
+        for topic in topics.CONTROL:
+            text = self._ownership.strangers(topic)
+            self.stranger(topic, text)
+            found = found or text is not None
+        return found
+
     def _connected(self) -> bool:
-        waited_s = time.monotonic() - self._heard
-        recorders = (
-            self._settings.recorders if waited_s < self._settings.timeout_s else 0
-        )
-        if self._ticks.listeners() < recorders:
-            return False
-        # They listen once their own answers get through.
+        """Return whether all who follow a walk will hear of its beginning."""
+        # Learner and trajectory listen once their own answers get through.
         peers = (topics.LEARNER_NODE, topics.TRAJECTORY_NODE)
+        if not self.reaches(self._observations, *peers):
+            return False
+        # They may have stopped to listen to each other, for a stranger.
+        for topic, listener in (
+            (topics.CORRECTION, topics.TRAJECTORY_NODE),
+            (topics.WAIST_REFERENCE, NAME),
+            (topics.EPISODE, NAME),
+        ):
+            listening = self.get_subscriptions_info_by_topic(topic.name)
+            if listener not in {info.node_name for info in listening}:
+                return False
+        first = self._pilot is not None and self._pilot.walks == 0
+        waited_s = time.monotonic() - self._heard
+        if not first or waited_s >= self._settings.timeout_s:
+            return True
+        # What is published before a recorder is there would be lost.
+        recorders = self._settings.recorders
         listeners = self._observations.get_subscription_count()
-        return listeners >= len(peers) + recorders and self.reaches(
-            self._observations, *peers
+        return (
+            self._ticks.listeners() >= recorders and listeners >= len(peers) + recorders
         )
 
     def _silent_peer(self) -> str:

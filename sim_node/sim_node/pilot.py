@@ -5,8 +5,6 @@ Pure bookkeeping around the robot; the node brings the messages and the time.
 
 from __future__ import annotations
 
-import msgspec
-
 from biped_description.errors import DescriptionError
 from biped_description.robot import Robot
 from msgs_json.end_cause import EndCause
@@ -83,18 +81,18 @@ class Pilot:
             raise RefusedMessageError(str(error)) from None
         self.segment = segment
 
-    def observe(self, late: bool = False) -> Observation:
-        """Sum up what was walked since the last observation (real time).
+    def observe(self) -> Observation:
+        """Sum up what was walked since the last observation (real time)."""
+        self.observation = self.biped.observe()
+        return self.observation
 
-        Args:
-            late: a deadline of this walk was missed: where it has failed, it did so on
-                references that nobody chose for it, and that is why it ends.
+    def miss(self) -> Observation:
+        """End the walk: its next segment is due, and not there (real time).
+
+        That is why it ends, even if the look-ahead has made it fail in this tick.
         """
-        observation = self.biped.observe()
-        if late and observation.end_cause is not None:
-            observation = msgspec.structs.replace(observation, end_cause=EndCause.LATE)
-        self.observation = observation
-        return observation
+        self.biped.end(EndCause.LATE, failed=True)
+        return self.observe()
 
     def end(self, cause: EndCause) -> Observation | None:
         """End the walk from outside; return the observation that tells so, if any."""

@@ -1,8 +1,12 @@
 """Walking in real time: one thread, absolute deadlines, no waiting for anybody.
 
-A segment is taken over as soon as it is there. One that is not there at the end of its
-learning tick is replaced by the look-ahead of the last one, and counted as a missed
-deadline. When the look-ahead is used up, the robot is held and the walk ends.
+A segment is taken over as soon as it is there; until then the robot walks on along the
+look-ahead of the last one. A segment that is not there at the end of its learning tick
+has missed its deadline, and the walk ends as `late`: what would follow was chosen by
+nobody, so nothing could be made of it.
+
+A thread that was held up for longer than two control ticks does not make up for it: its
+clock falls behind, and who answers has the whole learning tick all the same.
 """
 
 from __future__ import annotations
@@ -25,6 +29,8 @@ from msgs_json.observation import Observation
 from sim_node.pilot import Pilot
 
 _REMEMBERED_TICKS = 10_000
+_STALL_TICKS = 2
+"""Control ticks by which the thread may be behind before the time is lost."""
 
 
 class Punctuality:
@@ -35,6 +41,8 @@ class Punctuality:
         self.missed_deadlines = 0
         self.ticks = 0
         """Control ticks walked."""
+        self.lost_ns = 0
+        """Time by which walks fell behind the wall clock."""
         self._rated_ticks = 0
         self._rated_ns = time.monotonic_ns()
         self._lateness_ns: deque[int] = deque(maxlen=_REMEMBERED_TICKS)
@@ -59,6 +67,7 @@ class Punctuality:
             "control ticks [Hz]": f"{rate_hz:.1f}",
             "simulated per real time": f"{rate_hz * CONTROL_PERIOD_S:.3f}",
             "missed 20 ms deadlines": str(self.missed_deadlines),
+            "real time lost [ms]": f"{self.lost_ns / 1e6:.1f}",
         }
         for name, values in (
             ("control tick lateness", self._lateness_ns),
@@ -78,6 +87,7 @@ class RealtimeLoop:
     def __init__(
         self,
         pilot: Pilot,
+        walk_ticks: int,
         factor: float,
         publish: Callable[[Observation], None],
         punctuality: Punctuality,
@@ -86,12 +96,14 @@ class RealtimeLoop:
 
         Args:
             pilot: of the robot.
+            walk_ticks: control ticks of the whole walk; then nothing more is due.
             factor: simulated seconds per second.
             publish: gives out an observation.
             punctuality: takes note of the deadlines.
         """
         self._punctuality = punctuality
         self._pilot = pilot
+        self._walk_ticks = walk_ticks
         self._publish = publish
         self.set_factor(factor)
         self._requests: SimpleQueue[Callable[[], None]] = SimpleQueue()
@@ -99,8 +111,6 @@ class RealtimeLoop:
         self._paused = False
         self._observed_ns = 0
         self._answered = False
-        self._late = False
-        """A deadline of the present walk was missed."""
         self._thread = threading.Thread(target=self._run, name="realtime", daemon=True)
 
     def set_factor(self, factor: float) -> None:
@@ -125,7 +135,6 @@ class RealtimeLoop:
 
     def begin(self) -> None:
         """Begin the next walk."""
-        self._late = False
         self._give_out(self._pilot.begin())
 
     def segment_arrived(self) -> None:
@@ -150,12 +159,14 @@ class RealtimeLoop:
             wait_ns = deadline_ns - time.monotonic_ns()
             if wait_ns > 0:
                 time.sleep(wait_ns * 1e-9)
-            lateness_ns = time.monotonic_ns() - deadline_ns
+            lateness_ns = max(0, time.monotonic_ns() - deadline_ns)
+            stalled = lateness_ns > _STALL_TICKS * self._period_ns
+            if stalled:
+                deadline_ns += lateness_ns
             self._serve_requests()
-            if self._paused or self._pilot.observation is None:
-                continue
-            if self._pilot.biped.end_cause is None:
-                self._punctuality.late(max(0, lateness_ns))
+            if not self._paused and self._pilot.walking:
+                self._punctuality.late(lateness_ns)
+                self._punctuality.lost_ns += lateness_ns if stalled else 0
                 self._tick()
 
     def _serve_requests(self) -> None:
@@ -168,21 +179,25 @@ class RealtimeLoop:
 
     def _tick(self) -> None:
         biped = self._pilot.biped
+        if biped.control_tick >= self._walk_ticks:
+            return  # the robot stands until it is told the result
         if biped.ticks_ahead < 1:
             # Before the first segment of a walk the robot just stands and waits.
             if biped.control_tick > 0:
-                self._punctuality.missed_deadlines += 1
-                self.end(EndCause.PEER_SILENT)
+                self._miss()
             return
         biped.advance()
         over = biped.end_cause is not None
         # The walk's last segment is shorter; on look-ahead, only the count tells.
         due = biped.at_segment_end or biped.control_tick % TICKS_PER_LEARNING_TICK == 0
-        if over or due:
-            if not self._answered:
-                self._punctuality.missed_deadlines += 1
-                self._late = True
-            self._give_out(self._pilot.observe(self._late))
+        if due and not self._answered:
+            self._miss()
+        elif over or due:
+            self._give_out(self._pilot.observe())
+
+    def _miss(self) -> None:
+        self._punctuality.missed_deadlines += 1
+        self._give_out(self._pilot.miss())
 
     def _give_out(self, observation: Observation) -> None:
         self._observed_ns = time.monotonic_ns()

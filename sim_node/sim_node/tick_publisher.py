@@ -11,7 +11,6 @@ from biped_ros.messages import (
     point_template,
 )
 from msgs_json import topics
-from msgs_json.observation import PhaseFlags
 from msgs_json.wire import encode
 from sim_node.control_tick import ControlTick
 
@@ -37,8 +36,6 @@ class TickPublisher:
         self._state_template = joint_state_template(JOINT_NAMES, with_effort=True)
         self._reference_template = joint_state_template(JOINT_NAMES, with_effort=False)
         self._point_template = point_template()
-        self._last_phase: PhaseFlags | None = None
-        self._phase_message = b""
 
     def listeners(self) -> int:
         """Return how many are connected to every one of the topics."""
@@ -70,8 +67,4 @@ class TickPublisher:
         )
         self._zmp.publish(self._point_template.fill(tick.contact[:2], at))
         self._zmp_reference.publish(self._point_template.fill(tick.zmp_reference, at))
-        phase = tick.phase
-        if phase != self._last_phase:
-            self._last_phase = phase
-            self._phase_message = string_message(encode(phase))
-        self._phase.publish(self._phase_message)
+        self._phase.publish(string_message(encode(tick.phase)))

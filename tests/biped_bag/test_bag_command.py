@@ -4,9 +4,13 @@ import json
 import re
 
 import pytest
-from tests.biped_bag.bags import record
+from tests.biped_bag.bags import RELIABLE, record
 
+from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.reader import BagReader
+from biped_bag.storage.writer import BagWriter
+from biped_common.terminal_text import printable
+from biped_ros.cdr import string_message
 
 READERS = ("info {}", "cut {} out --start 0", "export {} out")
 # What is given as a bag, and what the line must say.
@@ -119,7 +123,7 @@ def test_wrong_input_is_refused_in_one_line(bags, tmp_path, line, status, text):
 def test_it_is_not_understood(bags, line):
     outcome = bags("bag", *line.split())
     assert (outcome.status, outcome.out) == (2, "")
-    assert outcome.err.startswith("usage: biped bag")
+    assert outcome.err.startswith("biped bag")
 
 
 def test_info_tells_scripts_the_same(bags):
@@ -144,3 +148,34 @@ def test_a_cut_is_a_bag_again(bags, tmp_path):
 def test_an_export_names_its_tables(bags):
     told = json.loads(bags("bag", "export", "bag", "out", "--json").out)
     assert told["/clock"] == {"file": "out/clock.parquet", "rows": 100}
+
+
+@pytest.fixture
+def hostile(biped, tmp_path):
+    """A bag whose topic and run would clear the screen and make lines of their own."""
+    run = {"seed": "7\n\x1b[2J", "preset": "\u202e"}
+    writer = BagWriter(tmp_path / "bag", records={"biped.run": run})
+    writer.add_topic(BagTopic("/a\n/b\x1b[2J", "std_msgs/msg/String", [RELIABLE]))
+    writer.write(BagMessage("/a\n/b\x1b[2J", string_message("text"), 1, 1, 1))
+    writer.close()
+    return biped
+
+
+@pytest.mark.parametrize("verb", ["info", "export {} out", "verify", "play"])
+def test_names_in_a_bag_do_not_act_on_the_terminal(hostile, verb):
+    command = verb if "{}" in verb else f"{verb} {{}}"
+    done = hostile("bag", *command.format("bag").split())
+    shown = done.out + done.err
+    assert shown == printable(shown, layout=True)
+
+
+def test_a_name_in_a_bag_makes_no_line_of_its_own(hostile):
+    shown = hostile("bag", "info", "bag").out
+    assert "Topic: /a\\n/b\\x1b[2J | Type: std_msgs/msg/String" in shown
+    assert "seed 7\\n\\x1b[2J, preset \\u202e" in shown
+
+
+def test_a_refusal_quotes_names_in_one_line(hostile):
+    done = hostile("bag", "export", "bag", "out", "--topics", "/nobody")
+    assert done.status == 2
+    assert done.err.endswith("there: /a\\n/b\\x1b[2J\n")

@@ -6,6 +6,7 @@ import json
 import pyarrow.parquet
 import pytest
 from tests.biped_bag.bags import RELIABLE, START_NS, TICK_NS, record
+from tests.payloads import STAMPED_PHASE
 
 from biped_bag.errors import BagError
 from biped_bag.export import export, topic_table
@@ -20,17 +21,9 @@ from biped_ros.messages import (
     segment_template,
 )
 from msgs_json import topics
-from msgs_json.observation import PhaseFlags
 from msgs_json.wire import encode
 
 STATES = topics.JOINT_STATES.name
-PHASE = PhaseFlags(
-    planned_right_support=True,
-    planned_double_support=False,
-    measured_right_support=True,
-    measured_double_support=True,
-    step_index=2,
-)
 
 
 def bag_of(folder, *messages):
@@ -85,10 +78,13 @@ def test_points_are_named_for_what_they_are(tmp_path):
 
 
 def test_json_payloads_become_columns(tmp_path):
-    bag = bag_of(tmp_path / "bag", (topics.PHASE, string_message(encode(PHASE))))
+    bag = bag_of(
+        tmp_path / "bag", (topics.PHASE, string_message(encode(STAMPED_PHASE)))
+    )
     row = topic_table(bag, topics.PHASE.name).to_pylist()[0]
     assert row["step_index"] == 2
     assert row["planned_right_support"] is True
+    assert row["clock_ticks"] == 1040
 
 
 def test_waist_references_are_lists_over_their_rows(tmp_path):

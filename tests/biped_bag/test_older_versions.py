@@ -10,10 +10,18 @@ import pytest
 from biped_bag.storage.reader import BagReader
 from biped_bringup.cli.main import main
 
-BAGS = sorted((Path(__file__).parent / "older_versions").iterdir())
+FOLDER = Path(__file__).parent / "older_versions"
+SAMPLE = Path(__file__).parents[2] / "bags/sample"
+# What each version had of its own, and payloads whose fields have changed since.
+LATCHED = {"v0_1_0": "/biped/stance", "v0_2_0": "/biped/plan"}
+CHANGED = [
+    ("v0_1_0", "/biped/learner"),
+    ("v0_2_0", "/biped/learner"),
+    ("v0_2_0", "/biped/phase"),
+]
 
 
-@pytest.fixture(params=BAGS, ids=lambda folder: folder.name)
+@pytest.fixture(params=sorted(FOLDER.iterdir()), ids=lambda folder: folder.name)
 def bag(request) -> Path:
     return request.param
 
@@ -25,7 +33,7 @@ def test_every_message_is_read(bag):
 
 def test_it_is_described(bag, capsys):
     assert main(["bag", "info", str(bag)]) == 0
-    assert "/biped/stance" in capsys.readouterr().out
+    assert LATCHED[bag.name] in capsys.readouterr().out
 
 
 def test_payloads_that_are_as_they_were_are_exported(bag, tmp_path):
@@ -35,15 +43,26 @@ def test_payloads_that_are_as_they_were_are_exported(bag, tmp_path):
     assert any(tables.iterdir())
 
 
-def test_a_payload_of_another_version_is_named(bag, tmp_path, capsys):
-    assert main(["bag", "export", str(bag), str(tmp_path / "tables")]) == 2
+@pytest.mark.parametrize(("version", "topic"), CHANGED)
+def test_a_payload_of_another_version_is_named(version, topic, tmp_path, capsys):
+    words = ["bag", "export", str(FOLDER / version), str(tmp_path / "tables")]
+    assert main([*words, "--topics", topic]) == 2
     complaint = capsys.readouterr().err
-    assert "/biped/learner: the message logged at" in complaint
+    assert f"{topic}: the message logged at" in complaint
     assert "`$.version`" in complaint
 
 
-def test_a_learner_of_another_version_is_not_pretended_to_be_the_same(bag, capsys):
-    assert main(["bag", "verify", str(bag)]) == 2
+@pytest.mark.parametrize(
+    ("version", "options", "named"),
+    [
+        ("v0_1_0", (), "was recorded by another version"),
+        ("v0_2_0", ("--run-of", str(SAMPLE)), "/biped/learner: LearnerStatus: Invalid"),
+    ],
+)
+def test_a_learner_of_another_version_is_not_pretended_to_be_the_same(
+    version, options, named, capsys
+):
+    assert main(["bag", "verify", str(FOLDER / version), *options]) == 2
     complaint = capsys.readouterr().err
-    assert "was recorded by another version" in complaint
+    assert named in complaint
     assert complaint.count("\n") == 1

@@ -7,6 +7,7 @@ import yaml
 
 from biped_bringup.cli.main import parser
 from biped_bringup.run_settings import PRESETS, RunSettings, load_settings
+from biped_common.command_line import duration_s, natural, positive
 from biped_common.settings import from_mapping, to_mapping
 from biped_description.robot import Robot
 from biped_description.settings import RobotSettings
@@ -119,7 +120,7 @@ def test_every_option_that_takes_a_number_of_units_is_looked_at():
         (verb, action.option_strings[-1])
         for verb, options in verbs.choices.items()
         for action in options._actions
-        if action.type is not None and action.type.__name__ in ("float", "natural")
+        if action.type in (float, natural, positive, duration_s)
     }
     without_unit = {
         ("learn", "--seed"),

@@ -134,7 +134,7 @@ def test_a_report_says_that_walks_were_replayed(biped):
 
 def test_a_report_says_why_no_walk_was_replayed(biped):
     words = [word for word in LEARN if word != "--json"]
-    out = biped(*words, "--episodes", 1, "--set", DISTURBED[0]).out
+    out = biped(*words, "--set", DISTURBED[0]).out
     assert "replay               off: random disturbances" in out
 
 

@@ -154,8 +154,10 @@ def test_a_change_prevails_over_the_file(tmp_path):
     assert load_settings("paper", file, ["gait.steps=4"]).gait.steps == 4
 
 
-def test_the_last_change_prevails():
-    assert load_settings(changes=["gait.steps=4", "gait.steps=2"]).gait.steps == 2
+@pytest.mark.parametrize("again", ["gait.steps=2", "gait.steps=4", "gait={steps: 2}"])
+def test_a_setting_is_changed_once(again):
+    with pytest.raises(SettingsError, match=r"gives gait\.steps a second time"):
+        load_settings(changes=["gait.steps=4", again])
 
 
 def test_settings_can_be_changed_afterwards():

@@ -1,11 +1,20 @@
 """Studies over many seeds: unfinished runs count, finished seeds are not run again."""
 
 import json
+import re
 import sys
 
 import pytest
 
-from biped_lab.seed_study import RUNS_FILE, _parser, _seeds, main, read_runs, summary
+from biped_lab.seed_study import (
+    RUNS_FILE,
+    _parser,
+    _seeds,
+    main,
+    read_runs,
+    study_of,
+    summary,
+)
 
 
 def run(seed: int = 0, schedule: int | None = 40, greedy: int | None = 50, **figures):
@@ -87,9 +96,36 @@ def test_a_seed_is_run_once_and_then_stands_on_file(study, tmp_path, capfd):
 
 
 def test_a_run_that_cannot_be_carried_out_fails_the_study(study, tmp_path, capfd):
-    assert study("--set", "gait.shoes=2") == 1
-    assert "seed 3: biped learn: gait.shoes = 2: unknown" in capfd.readouterr().err
+    assert study("--set", "gait.step_length_m=0.45") == 1
+    assert "seed 3: biped learn: the robot cannot walk" in capfd.readouterr().err
     assert read_runs(tmp_path / RUNS_FILE) == []
+
+
+def test_a_wrong_setting_is_refused_before_anything_is_run(study, tmp_path, capfd):
+    assert study("--set", "gait.shoes=2") == 2
+    assert capfd.readouterr().err.startswith("gait.shoes = 2: unknown key")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--preset", "quick"), r"settings\.\S*rewards_to_fix 15 -> 3"),
+        (("--episodes", "9"), r"end\.episodes None -> 9"),
+        (("--stop-at-schedule",), r"end\.stop_at_schedule False -> True"),
+    ],
+)
+def test_runs_of_another_study_are_refused(study, tmp_path, capfd, options, said):
+    (tmp_path / RUNS_FILE).write_text(json.dumps(run(3) | study_of([])) + "\n")
+    assert study(*options) == 2
+    (line,) = capfd.readouterr().err.splitlines()
+    assert re.search(rf"runs\.jsonl: seed 3 is of another study, .*{said}", line)
+
+
+def test_a_run_that_does_not_say_its_settings_is_refused(study, tmp_path, capfd):
+    (tmp_path / RUNS_FILE).write_text(json.dumps(run(3)) + "\n")
+    assert study() == 2
+    assert "seed 3 is of another study, does not say" in capfd.readouterr().err
 
 
 # -- summary -----------------------------------------------------------------------

@@ -7,7 +7,7 @@ import rclpy
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_bringup.training import TrainingRun
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from biped_ros.qos import qos_profile
 
 SEED = 5
@@ -31,6 +31,17 @@ def learned_in_process(episodes):
     run.run(episodes, False, lambda _: True)
     run.close()
     return hashes(run.session)
+
+
+def own_publisher(graph, topic):
+    """The publisher of a control topic's owner: what it sends is not a stranger's."""
+    return next(
+        publisher
+        for node in graph.nodes
+        if node.get_name() == topic.owner
+        for publisher in node.publishers
+        if publisher.topic_name == topic.name
+    )
 
 
 class Client:

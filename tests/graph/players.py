@@ -16,7 +16,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_srvs.srv import Trigger
 
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from msgs_json.topics import Topic
 
 SAMPLE = Path(__file__).parents[2] / "bags/sample"

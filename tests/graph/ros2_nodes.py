@@ -9,13 +9,16 @@ import threading
 
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from rclpy.node import Node
-from std_srvs.srv import Empty
+from rclpy.qos import qos_profile_services_default
+from rclpy.service_introspection import ServiceIntrospectionState
+from std_srvs.srv import Empty, SetBool
 
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.one_executor import OneExecutor
 from biped_bringup.run_settings import load_settings
 
 COLOURS = {"background_b": 255, "background_g": 86, "background_r": 69}
+HOSTILE = "\x1b[2J\u202e歩行"
 LONGEST_S = 600.0
 
 
@@ -38,6 +41,27 @@ def teleop(context):
     return node
 
 
+def hidden(context):
+    """Return a node with a parameter that comes and goes, and texts of an enemy's."""
+    node = Node("_hidden", context=context)
+    descriptor = ParameterDescriptor(description=HOSTILE)
+    node.declare_parameter("hostile", HOSTILE, descriptor)
+    node.declare_parameter("dynamic", 1, ParameterDescriptor(dynamic_typing=True))
+    return node
+
+
+def introspected(context):
+    """Return a node whose service tells of its calls."""
+    node = Node("_introspected", context=context)
+    service = node.create_service(SetBool, "/_switch", lambda _, response: response)
+    service.configure_introspection(
+        node.get_clock(),
+        qos_profile_services_default,
+        ServiceIntrospectionState.CONTENTS,
+    )
+    return node
+
+
 def main():
     """Spin the nodes until stdin is closed."""
     parameters = node_parameters(
@@ -57,7 +81,8 @@ def main():
             teleop(context),
             Node("twin", context=context),
             Node("twin", context=context),
-            Node("_hidden", context=context),
+            hidden(context),
+            introspected(context),
         ]
         for node in others:
             graph.add(node)

@@ -3,11 +3,10 @@
 import msgspec
 import pytest
 from std_msgs.msg import String
-from tests.graph.clients import TIMEOUT_S, Client, quick
+from tests.graph.clients import TIMEOUT_S, Client, own_publisher, quick
 from tests.robots import SHIPPED
 
 from biped_bringup.one_executor import OneExecutor
-from biped_ros.qos import qos_profile
 from msgs_json import topics
 from msgs_json.observation import Observation
 from msgs_json.wire import decode, encode
@@ -85,12 +84,7 @@ def test_messages_that_are_refused_and_that_never_came_are_told(domain):
         ahead = msgspec.structs.replace(
             last, control_tick=30, clock_ticks=last.clock_ticks + 30
         )
-        publisher = client.node.create_publisher(
-            String, topics.OBSERVATION.name, qos_profile(topics.OBSERVATION)
-        )
-        assert graph.spin_until(
-            lambda: publisher.get_subscription_count() >= 3, TIMEOUT_S
-        )
+        publisher = own_publisher(graph, topics.OBSERVATION)
         for text in ("{", encode(first), encode(ahead)):
             publisher.publish(String(data=text))
         found = figures(
@@ -110,11 +104,9 @@ def test_messages_that_are_refused_and_that_never_came_are_told(domain):
 def test_a_stance_that_no_leg_reaches_is_refused(domain):
     reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
     plan = msgspec.structs.replace(reference.walk_plan(), waist_m=(0.0, 0.0, 5.0))
-    with OneExecutor(quick(listen_s=60.0), domain) as graph, Client(graph) as client:
-        publisher = client.node.create_publisher(
-            String, topics.PLAN.name, qos_profile(topics.PLAN)
-        )
-        publisher.publish(String(data=encode(plan)))
+    with OneExecutor(quick(listen_s=60.0), domain) as graph:
+        # Latched: whoever comes later hears the last one only.
+        own_publisher(graph, topics.PLAN).publish(String(data=encode(plan)))
         assert graph.spin_until(
             lambda: graph.sim.counts["/biped/plan refused"] == 1, TIMEOUT_S
         )

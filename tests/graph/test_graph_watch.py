@@ -7,7 +7,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from msgspec.structs import replace
 from std_msgs.msg import String
-from tests.payloads import RESULT, STATUS
+from tests.payloads import OBSERVATION, RESULT, STATUS
 
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from biped_ros.qos import qos_profile
@@ -21,18 +21,19 @@ SPOKEN_S = 0.5
 
 
 class Speaker:
-    """Says what learners would say."""
+    """Says what a learner and a robot would say."""
 
-    def __init__(self, node):
+    def __init__(self, learner, robot):
         self.publishers = [
             node.create_publisher(kind, topic.name, qos_profile(topic))
-            for topic, kind in (
-                (topics.LEARNER_STATUS, String),
-                (topics.EPISODE, String),
-                (topics.DIAGNOSTICS, DiagnosticArray),
+            for node, topic, kind in (
+                (learner, topics.LEARNER_STATUS, String),
+                (learner, topics.EPISODE, String),
+                (learner, topics.DIAGNOSTICS, DiagnosticArray),
+                (robot, topics.OBSERVATION, String),
             )
         ]
-        self._status, self._episode, self._diagnostics = self.publishers
+        self._status, self._episode, self._diagnostics, self._observed = self.publishers
 
     def status(self, process, **changes):
         status = replace(STATUS, instance=f"learner-1-{process}", **changes)
@@ -41,6 +42,16 @@ class Speaker:
     def episode(self, number):
         result = replace(RESULT, episode=number)
         self._episode.publish(String(data=encode(result)))
+
+    def observation(self, number, **changes):
+        """What the robot saw at the end of the walk of that number."""
+        last = replace(
+            OBSERVATION,
+            episode=number,
+            control_tick=RESULT.control_ticks,
+            trajectory_sha256=RESULT.trajectory_sha256,
+        )
+        self._observed.publish(String(data=encode(replace(last, **changes))))
 
     def diagnostics(self, process):
         status = DiagnosticStatus(name=topics.LEARNER_NODE, hardware_id=process)
@@ -59,8 +70,11 @@ def speaker(domain, watch):
     """Return a speaker whom the watch hears, of a learner that is not expected."""
     context = rclpy.Context()
     rclpy.init(context=context, domain_id=domain)
-    node = rclpy.create_node(topics.LEARNER_NODE, context=context)
-    speaker = Speaker(node)
+    nodes = [
+        rclpy.create_node(name, context=context)
+        for name in (topics.LEARNER_NODE, topics.SIM_NODE)
+    ]
+    speaker = Speaker(*nodes)
     assert hears(
         watch, lambda: all(p.get_subscription_count() for p in speaker.publishers)
     )
@@ -68,7 +82,8 @@ def speaker(domain, watch):
     speaker.diagnostics(OTHER)
     assert hears(watch, lambda: watch.status and watch.has_node(topics.LEARNER_NODE))
     yield speaker
-    node.destroy_node()
+    for node in nodes:
+        node.destroy_node()
     rclpy.shutdown(context=context)
 
 
@@ -80,10 +95,34 @@ def hears(watch, condition):
     return condition()
 
 
-def test_a_learner_elsewhere_is_believed_where_none_is_started_here(watch, speaker):
+def test_a_walk_has_ended_when_robot_and_learner_say_so(watch, speaker):
+    speaker.observation(7)
     speaker.episode(7)
     assert hears(watch, lambda: watch.results == 1)
     assert watch.result.episode == 7
+
+
+def test_the_robot_may_be_heard_after_the_learner(watch, speaker):
+    speaker.episode(7)
+    watch.spin(SPOKEN_S)
+    assert watch.results == 0
+    speaker.observation(7)
+    assert hears(watch, lambda: watch.results == 1)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"episode": 6},
+        {"control_tick": RESULT.control_ticks - 10},
+        {"trajectory_sha256": "0" * 64},
+    ],
+)
+def test_a_result_that_the_robot_does_not_bear_out_is_none(watch, speaker, other):
+    speaker.observation(7, **other)
+    speaker.episode(7)
+    assert hears(watch, lambda: watch.unseen is not None)
+    assert watch.results == 0
 
 
 def test_a_learner_that_was_expected_from_here_is_not_ready_when_another_is(
@@ -108,16 +147,54 @@ def test_what_another_learner_has_learned_is_not_this_ones(watch, speaker):
     assert not watch.status.learned
 
 
-def test_a_walk_that_ends_before_the_own_learner_takes_part_is_anothers(watch, speaker):
-    watch.status = None
-    watch.expect(topics.LEARNER_NODE, OWN)
-    speaker.status(OWN, active=False)
-    assert hears(watch, lambda: watch.status is not None)
-    speaker.episode(1)
+def test_what_a_second_learner_says_is_not_believed_and_it_is_named(
+    watch, speaker, domain
+):
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=domain)
+    forger = rclpy.create_node("forger", context=context)
+    try:
+        forged = Speaker(forger, forger)
+        episode = topics.EPISODE.name
+        assert hears(
+            watch, lambda: "forger (this host)" in watch.strangers.get(episode, "")
+        )
+        forged.observation(8)
+        forged.episode(8)
+        forged.status(OTHER, learned=True)
+        watch.spin(SPOKEN_S)
+        assert (watch.results, watch.unseen, watch.status.learned) == (0, None, False)
+    finally:
+        forger.destroy_node()
+        rclpy.shutdown(context=context)
     watch.spin(SPOKEN_S)
-    assert watch.results == 0
-    speaker.status(OWN, active=True)
-    assert hears(watch, lambda: watch.status.active)
-    speaker.episode(2)
+    speaker.observation(9)
+    speaker.episode(9)
     assert hears(watch, lambda: watch.results == 1)
-    assert watch.result.episode == 2
+
+
+def test_a_node_meets_its_predecessor_for_a_while_and_that_is_no_stranger(
+    watch, speaker, domain
+):
+    watch.expect(topics.LEARNER_NODE, OWN)
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=domain)
+    anew = rclpy.create_node(topics.LEARNER_NODE, context=context)
+    try:
+        publisher = anew.create_publisher(
+            String, topics.EPISODE.name, qos_profile(topics.EPISODE)
+        )
+        watch.spin(SPOKEN_S)
+        publisher.publish(String(data=encode(RESULT)))
+        watch.spin(SPOKEN_S)
+    finally:
+        anew.destroy_node()
+        rclpy.shutdown(context=context)
+    assert topics.EPISODE.name not in watch.strangers
+
+
+def test_what_a_node_is_to_publish_may_be_taken(watch, speaker):
+    assert watch.taken(topics.TRAJECTORY_NODE) is None
+    assert "published already by learner_node (this host)" in watch.taken(
+        topics.LEARNER_NODE
+    )

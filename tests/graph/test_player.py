@@ -121,10 +121,11 @@ def session():
             wait_for(lambda count=count: len(listener.order) >= count)
         done.after_steps = listener.settle()
         done.first = list(listener.order)
-        description = topics.ROBOT_DESCRIPTION
-        listener.listen(description.name, description.type_name, True, "late")
-        wait_for(lambda: listener.heard["late"])
-        done.late = list(listener.heard["late"])
+        name = topics.ROBOT_DESCRIPTION.name
+        # A node of its own: with two subscriptions, the listener would hear twice.
+        with Listener(DOMAIN, [t for t in ALL if t[0] == name]) as late:
+            wait_for(lambda: late.heard[name])
+            done.late = list(late.heard[name])
         ask("pause", "pause while paused")
         ask("resume", "resume")
         ask("step", "step while playing")

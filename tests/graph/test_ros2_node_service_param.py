@@ -4,8 +4,11 @@ The verbs run in this process, but for one: how they end as processes.
 """
 
 import os
+import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,7 @@ import yaml
 from tests.graph.domains import MODULE, own_domain
 from tests.ros2_verbs.golden_texts import golden
 
+from biped_common.terminal_text import printable
 from ros2_verbs.main import main
 
 DOMAIN = own_domain(MODULE)
@@ -226,14 +230,73 @@ def test_the_bipeds_parameters_are_described_with_units_and_ranges(ros2):
     assert "[s]\n  Constraints:\n" in out and "    Min value: 0.0\n" in out
 
 
-def test_a_dumped_file_is_loaded_as_far_as_the_node_takes_it(ros2, tmp_path):
-    _, dumped, _ = ros2("param", "dump", "/sim_node")
+@pytest.fixture
+def dumped(ros2, tmp_path):
+    """Return a file with the simulation's parameters."""
     file = tmp_path / "sim.yaml"
-    file.write_text(dumped)
-    status, out, err = ros2("param", "load", "/sim_node", str(file))
-    assert status == 1
+    file.write_text(ros2("param", "dump", "/sim_node")[1])
+    return file
+
+
+def test_what_was_dumped_is_loaded_also_where_the_node_takes_no_changes(ros2, dumped):
+    status, out, err = ros2("param", "load", "/sim_node", str(dumped))
+    assert (status, err) == (0, "")
     assert "Set parameter use_sim_time successful\n" in out
-    assert "Set parameter pace failed: " in err
+    assert "Set parameter pace successful: unchanged\n" in out
+
+
+def test_a_changed_file_is_loaded_as_far_as_the_node_takes_it(ros2, dumped):
+    dumped.write_text(dumped.read_text().replace("pace: lockstep", "pace: realtime"))
+    status, out, err = ros2("param", "load", "/sim_node", str(dumped))
+    assert status == 1
+    assert "Set parameter seed successful: unchanged\n" in out
+    assert err.startswith("Set parameter pace failed: ") and err.count("\n") == 1
+
+
+def test_a_parameter_is_deleted_where_its_node_lets_it_go(ros2):
+    hidden = ("/_hidden", "--include-hidden-nodes")
+    done = ros2("param", "delete", *hidden, "dynamic")
+    assert done == (0, "Deleted parameter successfully\n", "")
+    assert ros2("param", "get", *hidden, "dynamic")[0] == 1
+    status, out, err = ros2("param", "delete", *hidden, "hostile")
+    assert (status, out) == (1, "")
+    assert err.startswith("Deleting parameter failed: ")
+
+
+@pytest.mark.parametrize("verb", ["get", "describe", "dump"])
+def test_texts_of_a_node_do_not_act_on_the_terminal(ros2, verb):
+    name = [] if verb == "dump" else ["hostile"]
+    status, out, _ = ros2("param", verb, "/_hidden", "--include-hidden-nodes", *name)
+    assert status == 0
+    assert "\\" in out
+    assert out == printable(out, layout=True)
+
+
+def test_a_service_is_described(ros2):
+    assert ros2("service", "info", "/clear") == (0, golden("service_info"), "")
+
+
+def test_calls_of_a_service_are_echoed(ros2, tmp_path):
+    shown = tmp_path / "shown"
+    with shown.open("w") as file:
+        echo = subprocess.Popen([*COMMAND, "service", "echo", "/_switch"], stdout=file)
+    try:
+        # Called again and again, for nobody knows when it has begun to listen.
+        whole, end = "", time.monotonic() + TIMEOUT_S
+        while "REQUEST_RECEIVED" not in whole and time.monotonic() < end:
+            assert echo.poll() is None
+            ros2("service", "call", "/_switch", "std_srvs/srv/SetBool", "{data: true}")
+            whole = shown.read_text().rpartition("---\n")[0]
+        echo.send_signal(signal.SIGINT)
+        assert echo.wait(TIMEOUT_S) == 130
+    finally:
+        echo.kill()
+        echo.wait(TIMEOUT_S)
+    events = whole.split("---\n")
+    received = next(event for event in events if "REQUEST_RECEIVED" in event) + "---\n"
+    received = re.sub(r"(sec|nanosec|sequence_number): \d+", r"\1: <NUMBER>", received)
+    received = re.sub(r"client_gid:\n(  - \d+\n)+", "client_gid: <GID>\n", received)
+    assert received == golden("service_echo")
 
 
 @pytest.mark.parametrize(
@@ -243,6 +306,7 @@ def test_a_dumped_file_is_loaded_as_far_as_the_node_takes_it(ros2, tmp_path):
         ("param get /nobody x --timeout 0.1", "Node not found"),
         ("param get /sim_node nothing", "Parameter not set"),
         ("param describe /sim_node nothing", "Parameter not set"),
+        ("service info /nobody --spin-time 0.2", "Unknown service '/nobody'"),
         (
             "service call /nobody std_srvs/srv/Empty --timeout 0.1",
             "Service '/nobody' is not available",
@@ -271,6 +335,15 @@ def test_a_doctor_finds_the_twins(settled):
     assert status == 1
     assert found in err
     assert "/9 checks failed\n\nFailed modules: " in out
+
+
+def test_a_greeting_goes_over_ros_and_over_multicast(ros2):
+    status, out, err = ros2("doctor", "hello", "--once")
+    if err.startswith("multicast"):
+        pytest.skip(f"this machine has no {err.strip()}")
+    assert (status, err) == (0, "")
+    assert "Topic: /canyouhearme, Published Msg Count: 1\n" in out
+    assert "Multicast Group/Port: 225.0.0.1/49150, Sent Msg Count: 1\n" in out
 
 
 def test_as_a_process_a_verb_ends_with_its_status(ros2):

@@ -19,10 +19,12 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 from tests.ros2_verbs.golden_texts import golden
 
+from biped_common.terminal_text import printable
 from ros2_verbs.main import main
 
 TIMEOUT_S = 60.0
 PERIOD_S = 0.02
+HOSTILE = "\x1b]0;title\x07\x9b2J\u202e歩行"
 ONCE = ("--once", "--timeout", "30")
 
 
@@ -57,6 +59,12 @@ class Talker:
             String, "chit_chatter", lambda message: self.heard.append(message.data), 10
         )
         latched.publish(String(data='{"end": "completed"}'))
+        self.hostile = self.node.create_publisher(
+            String,
+            "hostile",
+            QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        )
+        self.hostile.publish(String(data=HOSTILE))
 
         def publish() -> None:
             twist.publish(Twist(linear=Vector3(x=2.0)))
@@ -156,6 +164,26 @@ def test_echo_suits_latched_and_unreliable_publishers(
     assert capfd.readouterr().out == '{\n  "end": "completed"\n}\n---\n'
     main(["topic", "echo", *ONCE, "/unreliable"])
     assert capfd.readouterr().out == "data: perhaps\n---\n"
+
+
+@pytest.mark.parametrize(
+    "form", [(), ("--csv",), ("--json",), ("--raw",), ("--field", "data"), ("-i",)]
+)
+def test_no_form_of_echo_lets_a_message_act_on_the_terminal(
+    talker: Talker, form: tuple[str, ...], capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["topic", "echo", *ONCE, *form, "/hostile"]) == 0
+    shown = capfd.readouterr().out
+    assert "]0;title" in shown
+    assert shown == printable(shown, layout=True)
+
+
+def test_one_message_that_does_not_come_in_time_is_a_failure(
+    talker: Talker, capfd: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--once", "--timeout", "0.2", "--spin-time", "1", "/two_types"]
+    assert main(["topic", "echo", *words, "std_msgs/msg/String"]) == 1
+    assert capfd.readouterr() == ("", "/two_types: no message came in 0.2 s\n")
 
 
 def test_echo_falls_back_to_what_connects_to_all_publishers(

@@ -16,7 +16,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
 
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from biped_ros.qos import qos_profile
 from msgs_json import topics
 

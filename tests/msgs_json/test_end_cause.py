@@ -24,6 +24,15 @@ def test_these_are_all_the_words():
     ]
 
 
+def test_these_come_from_outside():
+    assert {cause.value for cause in EndCause if cause.from_outside} == {
+        "late",
+        "peer_silent",
+        "reset",
+        "disturbed",
+    }
+
+
 @pytest.mark.parametrize("cause", EndCause)
 def test_a_cause_prints_as_its_word(cause):
     assert f"{cause}" == cause.value

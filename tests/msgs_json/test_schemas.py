@@ -11,11 +11,13 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.payloads import STATUS
 
 from msgs_json import schemas
 from msgs_json.bounds import Digest, Name, Seed
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import CostTerms
+from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation, PhaseFlags
 from msgs_json.schemas import PAYLOADS, file_name, schema_text
 from msgs_json.walk_plan import GaitPhase, Point
@@ -60,7 +62,8 @@ def value(kind):
     if kind in FIELD_KINDS:
         return FIELD_KINDS[kind]
     if get_origin(kind) is Annotated and get_origin(get_args(kind)[0]) is dict:
-        return st.dictionaries(FIELD_KINDS[Name], numbers, max_size=3)
+        keys, values = get_args(get_args(kind)[0])
+        return st.dictionaries(value(keys), value(values), max_size=3)
     if get_origin(kind) is Annotated and get_origin(get_args(kind)[0]) is tuple:
         return st.lists(made(GaitPhase), max_size=3).map(tuple)
     if kind == CostTerms | None:
@@ -174,6 +177,12 @@ def test_an_observation_may_leave_out_its_end_cause():
 )
 def test_what_the_decoder_refuses_is_not_valid(change):
     assert agree(Observation, json.dumps(OBSERVED | change)) == (True, False)
+
+
+@pytest.mark.parametrize("counts", [{"bored": 1}, {"late": -1}, {"late": 0.5}, [], 1])
+def test_counts_of_what_are_no_causes_are_not_valid(counts):
+    status = json.loads(encode(STATUS)) | {"given_up": counts}
+    assert agree(LearnerStatus, json.dumps(status)) == (True, False)
 
 
 @pytest.mark.parametrize(

@@ -7,15 +7,17 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.payloads import OBSERVATION, PHASE, RESULT, STATUS
+from tests.payloads import OBSERVATION, PHASE, RESULT, STAMPED_PHASE, STATUS
 
 from msgs_json.learner_status import LearnerStatus
-from msgs_json.observation import Observation
+from msgs_json.observation import Observation, StampedPhase
 from msgs_json.wire import MalformedMessageError, NotFiniteError, decode, encode
 
-PAYLOADS = (PHASE, OBSERVATION, RESULT, STATUS)
+PAYLOADS = (PHASE, STAMPED_PHASE, OBSERVATION, RESULT, STATUS)
+VERSIONS = {StampedPhase: 2, LearnerStatus: 3}
 COUNTS = (
     (PHASE, ("step_index",)),
+    (STAMPED_PHASE, ("step_index", "clock_ticks")),
     (OBSERVATION, ("episode", "clock_ticks", "control_tick")),
     (RESULT, ("episode", "control_ticks", "target_ticks", "subtask")),
     (
@@ -92,7 +94,7 @@ def test_a_payload_comes_back_from_bytes(payload):
 
 @EVERY_PAYLOAD
 def test_a_payload_says_its_version(payload):
-    version = 2 if isinstance(payload, LearnerStatus) else 1
+    version = VERSIONS.get(type(payload), 1)
     assert json.loads(encode(payload))["version"] == version
 
 
@@ -116,7 +118,7 @@ def test_the_kind_of_payload_is_named(payload):
 
 
 @EVERY_PAYLOAD
-@pytest.mark.parametrize("version", [0, 3, "1", None, 1.5, True])
+@pytest.mark.parametrize("version", [0, 4, "1", None, 1.5, True])
 def test_an_unknown_version_is_refused(payload, version):
     assert "version" in refusal(payload, changed(payload, version=version))
 
@@ -192,6 +194,10 @@ def test_a_cause_that_is_no_word_of_ours_is_refused():
     assert "$.end_cause" in refusal(
         OBSERVATION, changed(OBSERVATION, end_cause="bored")
     )
+
+
+def test_a_count_of_a_cause_that_is_no_word_of_ours_is_refused():
+    assert "$.given_up" in refusal(STATUS, changed(STATUS, given_up={"bored": 1}))
 
 
 @EVERY_PAYLOAD

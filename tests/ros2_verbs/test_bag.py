@@ -1,12 +1,12 @@
 """`ros2 bag`, as far as the tests of biped_bag do not reach."""
 
 import argparse
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-from biped_bag.recorder.selection import selection_of
 from ros2_verbs.bag import record
 from ros2_verbs.errors import VerbError
 from ros2_verbs.main import main
@@ -42,7 +42,11 @@ def settings(folder: object, *options: str) -> SimpleNamespace:
     parser = argparse.ArgumentParser()
     record.add_arguments(parser)
     asked = record.settings_of(parser.parse_args([*options, "-o", f"{folder}/bag"]))
-    return SimpleNamespace(settings=asked, wants=selection_of(asked).wants)
+
+    def wants(topic: str, type_name: str = "std_msgs/msg/String") -> bool:
+        return asked.selection().wants(topic, [type_name])
+
+    return SimpleNamespace(settings=asked, wants=wants)
 
 
 def test_a_regular_expression_may_match_a_part_of_a_name(tmp_path):
@@ -74,3 +78,51 @@ def test_a_folder_that_is_there_is_refused(tmp_path):
     (tmp_path / "bag").mkdir()
     with pytest.raises(VerbError, match="already exists"):
         settings(tmp_path, "-a")
+
+
+def test_topics_can_be_chosen_by_type_and_excluded_by_name(tmp_path):
+    made = settings(
+        tmp_path, "--topic-types", "std_msgs/msg/String", "--exclude-topics", "/y"
+    )
+    assert made.wants("/x") and not made.wants("/y")
+    assert not made.wants("/clock", "rosgraph_msgs/msg/Clock")
+
+
+def test_names_alone_cannot_be_excluded_from(tmp_path):
+    with pytest.raises(VerbError, match="--exclude-topics argument requires either"):
+        settings(tmp_path, "/x", "--exclude-topics", "/x")
+
+
+def refusal(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
+    """Return the status, and the last line on stderr."""
+    try:
+        status = main(["bag", *words])
+    except SystemExit as ended:
+        status = int(ended.code or 0)
+    return status, capsys.readouterr().err.splitlines()[-1]
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "named"),
+    [
+        (["-x", "["], 2, "argument -x/--exclude-regex: [: unterminated"),
+        (["-e", "("], 2, "argument -e/--regex: (: missing )"),
+        (["-m", "/a"], 2, "argument -m/--remap: /a: must have the form OLD:=NEW"),
+        (["--clock", "0"], 2, "argument --clock: 0: must be a positive number"),
+        (["--start-offset", "99"], 1, "lasts 18.114 s, so playing cannot start at 99"),
+        (["--playback-until-nsec", "7"], 1, "playing cannot end at 7 ns of the epoch"),
+    ],
+)
+def test_an_error_of_play_names_no_option_but_the_one_that_was_typed(
+    words: list[str], status: int, named: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ended, line = refusal(capsys, "play", str(SAMPLE), *words)
+    assert (ended, named in line) == (status, True)
+    assert not set(re.findall("--[a-z-]+", line)) - set(re.findall("--[a-z-]+", named))
+
+
+def test_an_error_of_record_names_the_option_that_was_typed(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    status, line = refusal(capsys, "record", "-x", "[")
+    assert (status, "argument -x/--exclude-regex: [" in line) == (2, True)

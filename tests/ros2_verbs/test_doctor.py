@@ -1,6 +1,7 @@
 """What `ros2 doctor` finds wrong; its look at a real graph is tested in tests/graph."""
 
 import fcntl
+import socket
 
 import pytest
 from rclpy.qos import LivelinessPolicy, QoSProfile, ReliabilityPolicy
@@ -10,6 +11,7 @@ from tests.ros2_verbs.golden_texts import golden
 from ros2_verbs.doctor import graph, host, installation
 from ros2_verbs.doctor.area import Area, complaints, report, summary
 from ros2_verbs.doctor.graph import Topic
+from ros2_verbs.doctor.hello import Summary
 
 # As the graph reports it: nothing is left to the system.
 KNOWN = {"depth": 1, "liveliness": LivelinessPolicy.AUTOMATIC}
@@ -162,3 +164,18 @@ def test_what_the_project_needs_is_installed():
     area = installation.package_area()
     assert not area.errors
     assert {"ros-jazzy-rclpy", "ros-fastrtps", "mcap"} <= dict(area.items).keys()
+
+
+def test_greetings_of_others_are_counted_by_host() -> None:
+    heard = Summary("/canyouhearme", 1.0)
+    heard.published, heard.sent = 10, 9
+    for host_name in ("atlas", "atlas", "babel"):
+        heard.hear(heard.subscribed, f"hello, it's me {host_name}")
+    heard.hear(heard.received, f"hello, it's me {socket.gethostname()}")
+    assert f"{heard.text()}\n" == golden("doctor_hello")
+
+
+def test_a_greeting_makes_no_lines_of_its_own() -> None:
+    heard = Summary("/canyouhearme", 1.0)
+    heard.hear(heard.subscribed, "hello,\n\x1b[2J")
+    assert "hello,\\n\\x1b[2J  " in heard.text()

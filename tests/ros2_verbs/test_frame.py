@@ -1,5 +1,6 @@
 """`ros2` itself: commands, completion, the hand-over to a real installation."""
 
+import argparse
 import io
 import os
 import re
@@ -11,7 +12,12 @@ import pytest
 
 import ros2_verbs
 from biped_common.verbs import entry_points
-from ros2_verbs.main import COMMANDS, main, make_parser
+from ros2_verbs import doctor
+from ros2_verbs.doctor import hello
+from ros2_verbs.errors import VerbError
+from ros2_verbs.graph.names import print_listed
+from ros2_verbs.main import COMMANDS, main, make_parser, run
+from ros2_verbs.options import completed
 from ros2_verbs.real_ros2 import HANDED_OVER, find, foreign_environment
 
 OURS = "#!/somewhere/python\nfrom ros2_verbs.main import main\n"
@@ -163,3 +169,40 @@ def test_a_real_ros2_is_started_instead_with_our_words(tmp_path: Path) -> None:
     assert not [line for line in environment if "_ROS_WHEELS_BOOTSTRAP" in line]
     libraries = [line for line in environment if line.startswith("LD_LIBRARY_PATH=")]
     assert not any(sys.prefix in line for line in libraries)
+
+
+def test_what_verbs_print_cannot_act_on_a_terminal(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def fail(_: argparse.Namespace) -> int:
+        print("\x1b[2J")
+        raise VerbError("\x9b1m")
+
+    assert run(argparse.Namespace(run=fail)) == 1
+    assert capsys.readouterr() == ("\\x1b[2J\n", "\\x9b1m\n")
+
+
+def test_names_on_the_graph_make_no_lines_of_their_own(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    print_listed(argparse.Namespace(only_count=False), ["/a\n/b\t\x1b"])
+    assert capsys.readouterr().out == "/a\\n/b\\t\\x1b\n"
+
+
+def test_names_that_act_on_a_terminal_are_not_completed() -> None:
+    parser = argparse.ArgumentParser()
+    action = parser.add_argument("name")
+    completed(action, lambda **_: ["/good", "/bad\x1b[2J"])
+    assert action.completer() == ["/good"]  # type: ignore[attr-defined]
+
+
+def test_a_command_can_be_called_itself_and_have_verbs() -> None:
+    parser = make_parser(["doctor"])
+    assert parser.parse_args(["doctor", "-r"]).run is doctor.main
+    parser = make_parser(["wtf", "hello"])
+    assert parser.parse_args(["wtf", "hello", "-1"]).run is hello.main
+
+
+def test_there_is_no_daemon(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["daemon", "status"]) == 0
+    assert capsys.readouterr().out == "The daemon is not running\n"

@@ -126,3 +126,27 @@ def test_numbers_and_texts_have_no_definition_of_their_own() -> None:
 def test_the_definition_of_a_field_is_found_by_its_package() -> None:
     assert nested_type("geometry_msgs", "Point[] points") == "geometry_msgs/msg/Point"
     assert nested_type("x", "std_msgs/Header header") == "std_msgs/msg/Header"
+
+
+def test_packages_are_listed_by_kind(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["interface", "packages"])
+    everything = capsys.readouterr().out.splitlines()
+    main(["interface", "packages", "-m"])
+    with_messages = capsys.readouterr().out.splitlines()
+    assert everything == sorted(everything)
+    assert "std_srvs" in everything and "std_srvs" not in with_messages
+    assert "std_msgs" in with_messages
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["std_srvs/srv/SetBool"], '"data: false\n"\n'),
+        (["geometry_msgs/msg/Vector3", "--no-quotes"], "x: 0.0\ny: 0.0\nz: 0.0\n\n"),
+    ],
+)
+def test_a_prototype_has_all_fields_with_their_defaults(
+    words: list[str], text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["interface", "proto", *words]) == 0
+    assert capsys.readouterr().out == text

@@ -2,11 +2,13 @@
 
 import json
 
+import yaml
 from geometry_msgs.msg import PoseWithCovariance, Twist, Vector3
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Byte, Float64MultiArray, String
 from tests.ros2_verbs.golden_texts import golden
 
+from biped_common.terminal_text import printable
 from ros2_verbs.messages.text import Shown, to_csv, to_json, to_plain, to_yaml
 
 CUT_AT_5 = Shown(length=5)
@@ -81,3 +83,10 @@ def test_other_messages_are_shown_as_their_fields_in_json() -> None:
 
 def test_json_has_no_bare_nan() -> None:
     assert json.loads(to_json(Vector3(x=float("nan"))))["x"] == "nan"
+
+
+def test_what_acts_on_a_terminal_is_escaped_so_that_it_can_be_read_again() -> None:
+    hostile = "\x1b[2J\x9b\u202e 歩行\nnext"
+    for text in (to_yaml(String(data=hostile)), to_json(String(data=hostile))):
+        assert text == printable(text, layout=True)
+        assert yaml.safe_load(text) == {"data": hostile}

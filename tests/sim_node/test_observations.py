@@ -3,10 +3,12 @@
 import dataclasses
 import hashlib
 
+import msgspec
 import numpy as np
 import pytest
 from tests.robots import SHIPPED
 
+from msgs_json.observation import StampedPhase
 from sim_node.biped import SimulatedBiped
 from sim_node.settings import SimSettings
 from sim_node.tick_sums import TickRows, TickSums
@@ -390,6 +392,7 @@ def test_a_control_tick_tells_the_zmp_asked_for(walked):
 def test_a_control_tick_tells_its_planned_phase(walked):
     for segment, ticks, _ in walked:
         for row, tick in enumerate(ticks, 1):
+            assert tick.phase.clock_ticks == tick.clock_ticks
             assert (
                 tick.phase.planned_right_support,
                 tick.phase.planned_double_support,
@@ -403,7 +406,10 @@ def test_a_control_tick_tells_its_planned_phase(walked):
 
 def test_the_last_control_tick_has_the_phase_of_the_observation(walked):
     for _, ticks, observation in walked:
-        assert ticks[-1].phase == observation.phase
+        flags = msgspec.structs.asdict(observation.phase)
+        assert ticks[-1].phase == StampedPhase(
+            clock_ticks=observation.clock_ticks, **flags
+        )
 
 
 # -- the time since the last observation -----------------------------------------------

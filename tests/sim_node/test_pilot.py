@@ -200,20 +200,15 @@ def test_the_cause_of_a_failure_is_not_replaced(new_pilot, static_walk):
     assert pilot.end(EndCause.RESET).end_cause is EndCause.FOOT_THROUGH_FLOOR
 
 
-def test_a_failure_after_a_missed_deadline_is_blamed_on_nobody(new_pilot, static_walk):
-    pilot = new_pilot(**FALLING)
+@pytest.mark.parametrize("limits", [{}, FALLING], ids=["sound", "failed"])
+def test_a_walk_whose_deadline_is_missed_ends_as_late(new_pilot, static_walk, limits):
+    pilot = new_pilot(**limits)
     pilot.begin()
     pilot.follow(pilot.observation.clock_ticks, static_walk[0])
     pilot.biped.advance()
-    assert pilot.observe(late=True).end_cause is EndCause.LATE
+    assert pilot.miss().end_cause is EndCause.LATE
     assert pilot.observation.end_cause is EndCause.LATE
-
-
-def test_a_walk_that_goes_on_after_a_missed_deadline_has_not_ended(pilot, static_walk):
-    pilot.begin()
-    pilot.follow(pilot.observation.clock_ticks, static_walk[0])
-    pilot.biped.advance()
-    assert pilot.observe(late=True).end_cause is None
+    assert not pilot.walking
 
 
 def test_the_next_walk_after_an_end_is_walked(pilot, static_walk):

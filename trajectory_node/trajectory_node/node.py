@@ -17,7 +17,6 @@ from biped_ros.messages import (
 from biped_ros.observation_gaps import ObservationGaps
 from biped_ros.running import run_node
 from msgs_json import topics
-from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import RefusedMessageError, decode, encode
@@ -54,9 +53,8 @@ class TrajectoryNode(GuardedNode):
         self._segments = self.publisher(topics.WAIST_REFERENCE)
         self._plan = self.publisher(topics.PLAN)
         self._plan.publish(string_message(encode(reference.walk_plan())))
-        self.listen(topics.LEARNER_STATUS, self._on_status)
         self.listen(topics.CORRECTION, self._on_correction)
-        self.listen_once_heard(
+        self.listen(
             topics.OBSERVATION, self._on_observation, {self._segments: topics.SIM_NODE}
         )
 
@@ -73,11 +71,6 @@ class TrajectoryNode(GuardedNode):
             )
         segment = self._maker.correct(clock_ticks, correction_m)
         self._publish(segment, clock_ticks)
-
-    def _on_status(self, message: bytes) -> None:
-        status = decode(LearnerStatus, string_text(message))
-        if status.active:
-            self._maker.hear(status.instance)
 
     def _publish(self, segment: WaistSegment | None, clock_ticks: int) -> None:
         if segment is not None:

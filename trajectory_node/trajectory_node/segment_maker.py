@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.wire import RefusedMessageError
@@ -17,7 +16,7 @@ from trajectory_node.waist_reference import WaistReference
 
 
 class SegmentMaker:
-    """Follows one simulation and one learner at a time."""
+    """Follows one simulation at a time."""
 
     def __init__(self, reference: WaistReference, limit_m: float) -> None:
         """Wait for the start of a walk.
@@ -31,24 +30,6 @@ class SegmentMaker:
         self._observation: Observation | None = None
         self._answered = True
         self._early: tuple[int, NDArray[np.float64]] | None = None
-        self.learner: str | None = None
-        """The learner that takes part."""
-        self._rivals = False
-
-    def hear(self, learner: str) -> None:
-        """Take note that a learner takes part.
-
-        Raises:
-            RefusedMessageError: another one does. From which of them a correction is
-                cannot be told, so none is taken until the walk has been given up.
-        """
-        if self.learner not in (None, learner):
-            self._rivals = True
-            raise RefusedMessageError(
-                f"{learner} takes part beside {self.learner}: corrections are taken "
-                "from neither until the walk has been given up"
-            )
-        self.learner = learner
 
     def observe(self, observation: Observation) -> WaistSegment | None:
         """Take an observation; return the segment if its correction is here already.
@@ -69,8 +50,6 @@ class SegmentMaker:
                 self._early = None
         self._observation = observation
         self._answered = observation.end_cause is not None
-        if observation.end_cause is EndCause.PEER_SILENT:
-            self.learner, self._rivals = None, False
         if self._answered:
             return None
         if observation.control_tick == 0:
@@ -96,8 +75,7 @@ class SegmentMaker:
             correction_m: (2,) [m].
 
         Raises:
-            RefusedMessageError: not finite, out of range, old, answered before, or two
-                learners take part.
+            RefusedMessageError: not finite, out of range, old, or answered before.
         """
         if not np.isfinite(correction_m).all():
             raise RefusedMessageError(f"correction {correction_m}: must be finite")
@@ -105,8 +83,6 @@ class SegmentMaker:
             raise RefusedMessageError(
                 f"correction {correction_m} m: must be within {self._limit_m} m"
             )
-        if self._rivals:
-            raise RefusedMessageError("correction while two learners take part")
         observed = -1 if self._observation is None else self._observation.clock_ticks
         if clock_ticks > observed:
             self._early = (clock_ticks, correction_m)

@@ -2,13 +2,17 @@
 
 The same object learns in one process, in a ROS node and in tests. It sees nothing but
 observations, and what it needs to go on bit for bit is in one checkpoint.
+
+A walk that ends from outside (late, peer silent, reset, disturbed) is given up, and so
+is one whose beginning was not seen or that another one cuts off: it leaves nothing
+behind but a number in the tally, and the next walk is walked with the very same draws.
 """
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import msgspec
@@ -47,6 +51,12 @@ class Tally:
     """Episodes when a frozen greedy walk first succeeded."""
     trajectories_sha256: str = ""
     """Chained over the learning episodes."""
+    given_up: dict[EndCause, int] = field(default_factory=dict)
+    """Walks that nothing was made of, by what ended them."""
+
+    def give_up(self, cause: EndCause) -> None:
+        """Count a walk of which nothing else is kept."""
+        self.given_up[cause] = self.given_up.get(cause, 0) + 1
 
 
 class LearningSession:
@@ -77,7 +87,7 @@ class LearningSession:
         """Whether a walk is under way; checkpoints are taken between walks."""
         self._walk: LearningWalk | FrozenWalk = self._learning
         self._begun = ("", 0)
-        """Simulation and number of the walk that was last begun."""
+        """Simulation and number of the walk that was last begun or given up."""
 
     @property
     def episodes(self) -> int:
@@ -102,11 +112,11 @@ class LearningSession:
     def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
         """Return the correction [m] for the coming learning tick, or the result.
 
-        A walk whose beginning was not seen is given up: its result is not counted, and
-        nothing is learned from it.
+        A walk whose beginning was not seen is given up.
         """
         walk = (observation.simulation, observation.episode)
         if observation.control_tick == 0 and observation.end_cause is None:
+            self._cut_off()
             self._walk = (
                 self.greedy() if self.frozen or self._trial_due else self._learning
             )
@@ -127,9 +137,25 @@ class LearningSession:
             self._count(answer)
         return answer
 
+    def over(self, observation: Observation) -> bool:
+        """Return whether the result of this walk has been told already.
+
+        In real time the robot walks on until it hears it.
+        """
+        walk = (observation.simulation, observation.episode)
+        begins = observation.control_tick == 0 and observation.end_cause is None
+        return walk == self._begun and not self.walking and not begins
+
     def _unseen(self, observation: Observation) -> EpisodeResult:
         """Return the result of a walk that was joined in its middle, if at all."""
-        self.walking = False
+        self._cut_off()
+        walk = (observation.simulation, observation.episode)
+        if walk != self._begun:  # more of it may come before the robot hears of this
+            self._begun = walk
+            cause = observation.end_cause
+            if cause is None or not cause.from_outside:
+                cause = EndCause.PEER_SILENT
+            self.tally.give_up(cause)
         schedule, cost = self.task.schedule, CostIntegral(self.settings.cost)
         cost.add(observation)
         result = cost.result(
@@ -141,6 +167,13 @@ class LearningSession:
         )
         return msgspec.structs.replace(result, cost=None)
 
+    def _cut_off(self) -> None:
+        """Give up the walk under way, if there is one: its end was not heard."""
+        if self.walking:
+            self.walking = False
+            self._learning.give_up()
+            self.tally.give_up(EndCause.PEER_SILENT)
+
     def greedy(self) -> FrozenWalk:
         """Return a frozen greedy walk of the present memory."""
         return greedy_walk(self.settings, self.walk_ticks, self.learner, self.task)
@@ -149,12 +182,11 @@ class LearningSession:
         """Return a hash of all that was learned."""
         return arrays_sha256(self.learner.memory())
 
-    def status(self, instance: str, active: bool) -> LearnerStatus:
+    def status(self, instance: str) -> LearnerStatus:
         """Return how far the session has come, under the learner's name."""
         schedule = self.task.schedule
         return LearnerStatus(
             instance=instance,
-            active=active,
             seed=self.seed,
             target_time_s=seconds(schedule.target_ticks),
             subtask=schedule.subtask,
@@ -167,6 +199,7 @@ class LearningSession:
             schedule_complete=schedule.complete,
             learned=self.learned,
             frozen=self.frozen,
+            given_up=dict(self.tally.given_up),
             simulated_s=seconds(self.tally.simulated_ticks),
             memory_sha256=self.memory_sha256(),
             trajectory_sha256=self.tally.trajectories_sha256,
@@ -181,7 +214,7 @@ class LearningSession:
                 "rng": self.learner.rng.bit_generator.state,
             },
             "trial_due": self._trial_due,
-            "tally": vars(self.tally),
+            "tally": asdict(self.tally),
         }
 
     def arrays(self) -> Arrays:
@@ -203,7 +236,7 @@ class LearningSession:
         for name, array in arrays.items():
             group, _, key = name.partition("/")
             groups[group][key] = array
-        tally, log = Tally(**header["tally"]), EpisodeLog(groups[_LOG])
+        tally, log = _tally(header["tally"]), EpisodeLog(groups[_LOG])
         progress = header["progress"]
         self.learner.restore(groups[_MEMORY])
         self.learner.rng.bit_generator.state = progress["rng"]
@@ -214,6 +247,9 @@ class LearningSession:
 
     def _count(self, result: EpisodeResult) -> None:
         tally = self.tally
+        if result.end_cause.from_outside:
+            tally.give_up(result.end_cause)
+            return
         if not result.learning:
             tally.evaluations += 1
             tally.evaluation_ticks += result.control_ticks
@@ -231,3 +267,15 @@ class LearningSession:
         self._trial_due = (
             result.schedule_complete and result.completed and not self.learned
         )
+
+
+def _tally(counts: Mapping[str, Any]) -> Tally:
+    """Return the tally of a checkpoint.
+
+    Raises:
+        TypeError, ValueError: it is none.
+    """
+    tally = Tally(**counts)
+    # Older checkpoints do not know it; JSON makes words of its causes.
+    tally.given_up = {EndCause(c): int(n) for c, n in dict(tally.given_up).items()}
+    return tally

@@ -7,6 +7,7 @@ the walk has failed or reached its target time.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,11 +32,14 @@ class LearningWalk:
         self._task = task
         self._learner = learner
         self._held_m = NO_CORRECTION_M
+        self._chance: Any = None
+        """State of the learner's generator when the walk began; None between walks."""
 
     def respond(self, observation: Observation) -> NDArray[np.float64] | EpisodeResult:
         """Learn from an observation; return the (2,) correction [m] or the result.
 
-        An observation at control tick 0 begins an episode.
+        An observation at control tick 0 begins an episode. A walk that ends from
+        outside is given up.
         """
         task, learner = self._task, self._learner
         begins = observation.control_tick == 0
@@ -43,16 +47,28 @@ class LearningWalk:
             task.begin()
         end = task.end(observation)
         if end is not None:
-            tell(learner, end.outcome)
+            if end.result.end_cause.from_outside:
+                self.give_up()
+            else:
+                tell(learner, end.outcome)
+                self._chance = None
             return end.result
         if task.decides(observation):
             inputs = sensory_input(observation)
             if begins:
+                self._chance = learner.rng.bit_generator.state
                 learner.begin_episode(inputs)
             else:
                 learner.advance(inputs)
             self._held_m = task.correction_m(learner.choose())
         return self._held_m
+
+    def give_up(self) -> None:
+        """Take back the walk under way, if any: the next one is walked as it was."""
+        if self._chance is not None:
+            self._learner.give_up_episode()
+            self._learner.rng.bit_generator.state = self._chance
+            self._chance = None
 
 
 class FrozenWalk:

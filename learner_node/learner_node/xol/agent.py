@@ -7,6 +7,7 @@
     advance         2(c)iv, vii       the next state; p_Np; E <- gamma E
     finish_subtask  2(c)viii          Strategy 2 fixes states
     finish_episode  2(c)vii, ix       useless states are forgotten
+    give_up_episode                   as if the episode had never begun
 
 It answers the calls of `learner_node.learner.Learner`; who owns the task makes them.
 """
@@ -20,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from learner_node.journal import RowJournal
 from learner_node.memory import Arrays, check_memory, count_of_states
 from learner_node.problem import Problem
 from learner_node.states import NO_STATE, BasisStates, StateSettings
@@ -60,12 +62,18 @@ class XolAgent:
         self.failures_in_a_row = 0
         self.state = NO_STATE
         self._chosen = np.zeros(self.rules.space.table_shape[0], dtype=np.int64)
+        self._journal = RowJournal()
+        self._failures_before = 0
+        """Failures in a row when the episode began."""
 
     # -- one episode -------------------------------------------------------------
 
     def begin_episode(self, inputs: NDArray[np.float64]) -> None:
         """Take the initial state and empty the queue (2(a), 2(b))."""
         self.episode += 1
+        self._failures_before = self.failures_in_a_row
+        self.states.mark()
+        self._journal.begin()
         self.queue.clear()
         self.state = self._locate(inputs)
 
@@ -176,6 +184,15 @@ class XolAgent:
         if remaining is not None:
             self.rules.keep(remaining)
 
+    def give_up_episode(self) -> None:
+        """Become what it was before the episode began, but for the random numbers."""
+        self._journal.undo(self.rules.tables())
+        self.states.rewind()
+        self.failures_in_a_row = self._failures_before
+        self.episode -= 1
+        self.queue.clear()
+        self.state = NO_STATE
+
     def finish_subtask(self) -> None:
         """Fix every rewarded state that is no penalty state (Strategy 2, 2(c)viii)."""
         if self.settings.fixed_mode.strategy == "strategy2":
@@ -245,6 +262,7 @@ class XolAgent:
     def _locate(self, inputs: NDArray[np.float64]) -> int:
         k = self.states.find(inputs, create=True)
         self._make_room()
+        self._journal.visit(k, self.rules.tables())
         return k
 
     def _make_room(self) -> None:

@@ -6,6 +6,9 @@ code with one component whose alternatives are all the joint actions.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -65,6 +68,10 @@ class RuleTable:
         exists = np.arange(shape[1]) < self.sizes[:, None]
         self._unjudged = np.where(exists, n_penalties, -1)
         self.avoided = np.tile(self._unjudged, (rows, 1, 1))
+
+    def tables(self) -> Iterator[NDArray[Any]]:
+        """Yield the arrays, in the order of ARRAYS."""
+        return (getattr(self, name) for name in self.ARRAYS)
 
     def grow(self, capacity: int) -> None:
         """Make room for at least `capacity` states."""

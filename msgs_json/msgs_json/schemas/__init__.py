@@ -12,17 +12,18 @@ import ast
 import inspect
 import json
 import re
-from typing import Any, get_args
+from enum import Enum
+from typing import Any, get_args, get_origin
 
 import msgspec
 
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
-from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.observation import Observation, StampedPhase
 from msgs_json.walk_plan import WalkPlan
 
 PAYLOADS: tuple[type[msgspec.Struct], ...] = (
-    PhaseFlags,
+    StampedPhase,
     Observation,
     EpisodeResult,
     LearnerStatus,
@@ -32,7 +33,7 @@ _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def file_name(payload: type[msgspec.Struct]) -> str:
-    """Return the name of a payload's file, such as phase_flags.schema.json."""
+    """Return the name of a payload's file, such as stamped_phase.schema.json."""
     words = re.findall("[A-Z][a-z]*", payload.__name__)
     return f"{'_'.join(words).lower()}.schema.json"
 
@@ -60,6 +61,8 @@ def schema_of(payload: type[msgspec.Struct]) -> dict[str, Any]:
             }
         for field, text in _field_docstrings(structs.get(name)).items():
             properties[field]["description"] = text
+        for field, words in _key_words(structs.get(name)).items():
+            properties[field]["propertyNames"] = {"$ref": f"#/$defs/{words}"}
     return {"$schema": _DIALECT, **schema}
 
 
@@ -74,13 +77,24 @@ def _structs(kind: Any) -> dict[str, type[msgspec.Struct]]:
     return found
 
 
+def _key_words(struct: type[msgspec.Struct] | None) -> dict[str, str]:
+    """Return the enumeration of each mapping's keys, which msgspec leaves out."""
+    found = {}
+    for field in () if struct is None else msgspec.structs.fields(struct):
+        kind = get_args(field.type)[0] if get_args(field.type) else field.type
+        key = get_args(kind)[0] if get_origin(kind) is dict else None
+        if isinstance(key, type) and issubclass(key, Enum):
+            found[field.name] = key.__name__
+    return found
+
+
 def _field_docstrings(struct: type[msgspec.Struct] | None) -> dict[str, str]:
     """Return the docstring under each field of a struct, which Python itself drops."""
-    if struct is None:
+    if struct is None or struct is msgspec.Struct:
         return {}
+    texts = _field_docstrings(struct.__base__)
     (body,) = ast.parse(inspect.getsource(struct)).body
     assert isinstance(body, ast.ClassDef)
-    texts = {}
     for field, after in zip(body.body, body.body[1:], strict=False):
         match field, after:
             case (

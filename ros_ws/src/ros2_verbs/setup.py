@@ -13,6 +13,7 @@ setup(
     entry_points={
         "ros2.commands": [
             "bag = ros2_verbs.bag",
+            "daemon = ros2_verbs.daemon",
             "doctor = ros2_verbs.doctor",
             "interface = ros2_verbs.interface",
             "node = ros2_verbs.node",
@@ -20,15 +21,24 @@ setup(
             "run = ros2_verbs.run",
             "service = ros2_verbs.service",
             "topic = ros2_verbs.topic",
+            "wtf = ros2_verbs.doctor",
         ],
         "ros2.bag_verbs": [
             "info = ros2_verbs.bag.info",
             "play = ros2_verbs.bag.play",
             "record = ros2_verbs.bag.record",
         ],
+        "ros2.daemon_verbs": [
+            "status = ros2_verbs.daemon.status",
+        ],
+        "ros2.doctor_verbs": [
+            "hello = ros2_verbs.doctor.hello",
+        ],
         "ros2.interface_verbs": [
             "list = ros2_verbs.interface.list",
             "package = ros2_verbs.interface.package",
+            "packages = ros2_verbs.interface.packages",
+            "proto = ros2_verbs.interface.proto",
             "show = ros2_verbs.interface.show",
         ],
         "ros2.node_verbs": [
@@ -36,6 +46,7 @@ setup(
             "list = ros2_verbs.node.list",
         ],
         "ros2.param_verbs": [
+            "delete = ros2_verbs.param.delete",
             "describe = ros2_verbs.param.describe",
             "dump = ros2_verbs.param.dump",
             "get = ros2_verbs.param.get",
@@ -45,7 +56,9 @@ setup(
         ],
         "ros2.service_verbs": [
             "call = ros2_verbs.service.call",
+            "echo = ros2_verbs.service.echo",
             "find = ros2_verbs.service.find",
+            "info = ros2_verbs.service.info",
             "list = ros2_verbs.service.list",
             "type = ros2_verbs.service.type",
         ],
@@ -59,6 +72,9 @@ setup(
             "list = ros2_verbs.topic.list",
             "pub = ros2_verbs.topic.pub",
             "type = ros2_verbs.topic.type",
+        ],
+        "ros2.wtf_verbs": [
+            "hello = ros2_verbs.doctor.hello",
         ],
     },
 )

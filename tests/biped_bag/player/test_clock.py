@@ -62,3 +62,19 @@ def test_there_are_no_steps_while_playing():
 def test_flat_out_everything_is_due_at_once():
     clock = PlaybackClock(0, FLAT_OUT, 100)
     assert clock.due_ns(10**15) == 100
+
+
+@given(played_ns=times, old=rates, new=rates, later_ns=times)
+def test_another_rate_holds_from_where_playing_is(played_ns, old, new, later_ns):
+    clock = PlaybackClock(0, old, 0)
+    clock.set_rate(new, played_ns)
+    reached_ns = round(played_ns * old)
+    due_ns = clock.due_ns(reached_ns + later_ns)
+    assert due_ns == pytest.approx(played_ns + later_ns / new, abs=1.0)
+
+
+def test_another_rate_while_paused_moves_nothing():
+    clock = PlaybackClock(7, 1.0, 0, paused=True)
+    clock.set_rate(2.0, 1000)
+    clock.resume(1000)
+    assert clock.due_ns(7) == 1000

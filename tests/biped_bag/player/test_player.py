@@ -98,6 +98,24 @@ def test_a_loop_goes_on_until_it_is_stopped():
     assert published == (messages(5) * (count // 5 + 1))[:count]
 
 
+def test_every_pass_waits_for_the_delay():
+    playing = player(messages(2), lambda _: None, delay_s=0.1)
+    playing.start()
+    assert playing.finish().duration_s >= 0.0999
+
+
+def test_a_stop_ends_the_delay():
+    playing = player(messages(5), lambda _: None, delay_s=10.0 * TIMEOUT_S)
+    playing.start()
+    playing.stop()
+    assert playing.finish().messages == 0
+
+
+def test_pausing_can_be_toggled():
+    playing = player(messages(1), lambda _: None)
+    assert [playing.toggle_paused() for _ in range(3)] == [True, False, True]
+
+
 def test_what_ends_playing_early_is_raised_at_its_end():
     def fail(_):
         raise OSError("no more disk")

@@ -73,7 +73,7 @@ class RecordedRun:
         self._say(topics.ZMP_REFERENCE, self._point.fill(tick.zmp_reference, at))
 
     def _say_status(self):
-        status = self.session.status(LEARNER, active=True)
+        status = self.session.status(LEARNER)
         self._say(topics.LEARNER_STATUS, string_message(encode(status)))
 
     def _say(self, topic, message):

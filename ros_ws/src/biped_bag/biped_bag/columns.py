@@ -26,13 +26,13 @@ from biped_common.timing import NS_PER_S
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
-from msgs_json.observation import Observation, PhaseFlags
+from msgs_json.observation import Observation, StampedPhase
 from msgs_json.wire import decode
 
 Row = dict[str, Any]
 
 _PAYLOADS: Mapping[str, type[msgspec.Struct]] = {
-    topics.PHASE.name: PhaseFlags,
+    topics.PHASE.name: StampedPhase,
     topics.OBSERVATION.name: Observation,
     topics.EPISODE.name: EpisodeResult,
     topics.LEARNER_STATUS.name: LearnerStatus,

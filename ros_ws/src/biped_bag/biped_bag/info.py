@@ -12,6 +12,7 @@ from mcap.records import Metadata
 from biped_bag.records import EPISODE_RECORD, RUN_RECORD
 from biped_bag.storage.contents import BagTopic
 from biped_bag.storage.reader import BagReader
+from biped_common.terminal_text import printable
 from biped_common.timing import NS_PER_S
 
 _LABEL_WIDTH = 19
@@ -99,14 +100,14 @@ def _of_service(topic: BagTopic) -> bool:
 
 
 def _topic_text(topic: BagTopic) -> str:
-    return (
+    return printable(
         f"Topic: {topic.name} | Type: {topic.type_name} | Count: {topic.count} | "
         f"Serialization Format: {topic.encoding}"
     )
 
 
 def _service_text(topic: BagTopic) -> str:
-    return (
+    return printable(
         f"Service: {topic.name.removesuffix(_SERVICE_TOPIC)} | "
         f"Type: {topic.type_name.removesuffix(_SERVICE_TYPE)} | "
         f"Event Count: {topic.count} | Serialization Format: {topic.encoding}"
@@ -133,7 +134,7 @@ def _moment_text(moment_ns: int) -> str:
 
 
 def _line(label: str, value: str) -> str:
-    return f"{label:<{_LABEL_WIDTH}}{value}"
+    return f"{label:<{_LABEL_WIDTH}}{printable(value)}"
 
 
 def _summary_of_run(run: Metadata) -> str:

@@ -13,6 +13,7 @@ import yaml
 from biped_common.settings import (
     Settings,
     SettingsError,
+    dotted,
     from_mapping,
     nested,
     overlay,
@@ -66,7 +67,7 @@ def load_settings(
     Args:
         preset: one of PRESETS.
         file: YAML of the presets' form; may be partial.
-        changes: dotted settings such as `learner.action.alternatives=9`.
+        changes: dotted settings such as `learner.action.alternatives=9`, each once.
 
     Raises:
         SettingsError: naming key, value and what is allowed.
@@ -85,6 +86,25 @@ def changed_settings(
     return _laid_over(to_mapping(settings), file, changes)
 
 
+def differences(
+    one: Mapping[str, Any], other: Mapping[str, Any]
+) -> dict[str, tuple[Any, Any]]:
+    """Return both values of each setting in which two runs differ, by dotted key."""
+    before, after = dotted(one), dotted(other)
+    return {
+        key: (before.get(key), after.get(key))
+        for key in before | after
+        if before.get(key) != after.get(key)
+    }
+
+
+def changes_in_words(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
+    """Return the differences as people read them, such as `gait.steps 5 -> 2`."""
+    return ", ".join(
+        f"{key} {old} -> {new}" for key, (old, new) in differences(one, other).items()
+    )
+
+
 def _laid_over(
     values: Mapping[str, Any], file: Path | None, changes: Iterable[str]
 ) -> RunSettings:
@@ -94,8 +114,15 @@ def _laid_over(
         except (OSError, UnicodeDecodeError) as error:
             raise SettingsError("file", str(file), f"cannot be read: {error}") from None
         values = overlay(values, _parsed(text, str(file)))
-    for change in changes:
-        values = overlay(values, _change(change))
+    given: set[str] = set()
+    for text in changes:
+        change = _change(text)
+        keys = dotted(change)
+        for key in keys:
+            if key in given:
+                raise SettingsError("--set", text, f"gives {key} a second time")
+        given.update(keys)
+        values = overlay(values, change)
     return from_mapping(RunSettings, values)
 
 

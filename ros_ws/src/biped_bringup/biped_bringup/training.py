@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from biped_bringup.replay import DEFAULT_MEMORY_BYTES, ReplayingWalker
-from biped_bringup.run_settings import RunSettings
+from biped_bringup.run_settings import RunSettings, changes_in_words
 from biped_bringup.walker import WalkedTicks, Walker
 from biped_common.seeds import robot_stream
 from biped_common.settings import from_mapping, to_mapping
@@ -62,6 +63,8 @@ class TrainingRun:
         self.cpu_s = 0.0
         self.written_by = _versions()
         """Package versions that wrote the checkpoint gone on from."""
+        self.setting_changes = ""
+        """Settings that differ from those of the checkpoint, in words."""
 
     @property
     def version_changes(self) -> list[str]:
@@ -107,25 +110,38 @@ class TrainingRun:
         """Walk the whole walk greedily, without learning."""
         return self.walker.walk(self.session.greedy())
 
+    def nothing_to_do(
+        self, max_episodes: int | None, stop_at_schedule: bool
+    ) -> str | None:
+        """Return why the run has come to its end, in words; None if it has not.
+
+        Args:
+            max_episodes: give up then; None for no limit.
+            stop_at_schedule: end with the schedule, as the paper does, whether or not
+                the frozen greedy walk succeeds.
+        """
+        if self.learned:
+            return "the walk is learned"
+        if stop_at_schedule and self.tally.schedule_episodes is not None:
+            return "the schedule is complete"
+        if max_episodes is not None and self.episodes >= max_episodes:
+            return f"{self.episodes} of at most {max_episodes} episodes are walked"
+        return None
+
     def run(
         self,
         max_episodes: int | None,
         stop_at_schedule: bool,
         after_episode: Callable[[EpisodeResult], bool],
     ) -> None:
-        """Learn until the walk is learned.
+        """Learn until there is nothing to do.
 
         Args:
-            max_episodes: give up then; None for no limit.
-            stop_at_schedule: end with the schedule, as the paper does, whether or not
-                the frozen greedy walk succeeds.
+            max_episodes: see `nothing_to_do`.
+            stop_at_schedule: see `nothing_to_do`.
             after_episode: told every result; returns whether to go on.
         """
-        while not self.learned:
-            if stop_at_schedule and self.tally.schedule_episodes is not None:
-                return
-            if max_episodes is not None and self.episodes >= max_episodes:
-                return
+        while self.nothing_to_do(max_episodes, stop_at_schedule) is None:
             if not after_episode(self.episode()):
                 return
 
@@ -182,6 +198,39 @@ class TrainingRun:
         run.written_by = dict(header.get("versions", {}))
         return run
 
+    def under(
+        self, settings: RunSettings, replay_bytes: int = DEFAULT_MEMORY_BYTES
+    ) -> TrainingRun:
+        """Return a run that goes on with this memory under other settings.
+
+        What was achieved was achieved under the old ones: the present subtask begins
+        anew, or the first that is no shorter, and no frozen walk has succeeded yet.
+
+        Args:
+            settings: differ in what `memory_settings.with_changes` lets change.
+            replay_bytes: memory for the replay of walks, 0 to compute them all.
+        """
+        run = TrainingRun(settings, self.seed, replay_bytes)
+        walked = self.session.task.schedule.target_ticks
+        targets = run.session.task.schedule.targets
+        header = self.session.header()
+        header["progress"] |= {
+            "subtask": next(i for i, ticks in enumerate(targets) if ticks >= walked),
+            "successes": 0,
+            "t_err_estimate": None,
+        }
+        header["trial_due"] = False
+        header["tally"] = header["tally"] | {"greedy_episodes": None}
+        run.session.restore(header, self.session.arrays())
+        run._robot_rng.bit_generator.state = self._robot_rng.bit_generator.state
+        run.walker.ticks = replace(self.walker.ticks)
+        run.cpu_s = self.cpu_s
+        run.written_by = self.written_by
+        run.setting_changes = changes_in_words(
+            to_mapping(self.settings), to_mapping(settings)
+        )
+        return run
+
     def summary(self, memory_file: Path) -> dict[str, Any]:
         """Return the run's figures, for people and scripts."""
         session, tally = self.session, self.tally
@@ -202,6 +251,7 @@ class TrainingRun:
             "cpu_s": round(self.cpu_s, 3),
             "figures": session.learner.figures(),
             "seed": self.seed,
+            "settings": to_mapping(self.settings),
             "memory_sha256": session.memory_sha256(),
             "trajectory_sha256": tally.trajectories_sha256,
             "memory_file": str(memory_file),

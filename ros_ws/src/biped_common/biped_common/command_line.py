@@ -1,11 +1,14 @@
-"""What the project's commands have in common: exit statuses, options, JSON."""
+"""What the project's commands have in common: exit statuses, parsers, options, JSON."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from biped_common.errors import BipedError
 
@@ -18,6 +21,51 @@ INTERRUPTED = 130
 
 class CommandError(BipedError, ValueError):
     """Options that do not go together, or a folder that cannot be used."""
+
+
+class CommandParser(argparse.ArgumentParser):
+    """Refuses in one line; an option that takes a value can be given once.
+
+    Parsers of verbs, which `add_subparsers` makes of it, are of the same kind.
+    """
+
+    def __init__(self, **arguments: Any) -> None:
+        """Take the arguments of `argparse.ArgumentParser`."""
+        super().__init__(**arguments)
+        self.given: set[str] = set()
+        """Where the options of the command line under way are kept."""
+        for name in (None, "store"):
+            self.register("action", name, StoreOnce)
+
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[Any, list[str]]:
+        """Parse, as does `argparse.ArgumentParser`."""
+        self.given.clear()
+        return super().parse_known_args(args, namespace)
+
+    def error(self, message: str) -> NoReturn:
+        """Say in one line what is wrong; exit with status 2."""
+        self.exit(WRONG_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+class StoreOnce(argparse.Action):
+    """Stores a value; of an option given twice, no value would be the right one."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        """Store the value that the command line has."""
+        assert isinstance(parser, CommandParser)
+        if option_string is not None:
+            if self.dest in parser.given:
+                raise argparse.ArgumentError(self, "given twice")
+            parser.given.add(self.dest)
+        setattr(namespace, self.dest, values)
 
 
 def add_json_option(parser: argparse.ArgumentParser) -> None:
@@ -40,18 +88,39 @@ def natural(text: str) -> int:
     return value
 
 
+def positive(text: str) -> int:
+    """Parse a whole number that is at least 1."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text}: must be at least 1")
+    return value
+
+
+def duration_s(text: str) -> float:
+    """Parse a finite number of seconds that is at least 0."""
+    value = float(text)
+    if not math.isfinite(value) or value < 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be at least 0 s")
+    return value
+
+
 def writable_folder(folder: Path) -> Path:
-    """Return the folder, made if need be.
+    """Return the folder, made if need be; where that fails, nothing is left of it.
 
     Raises:
         CommandError: it cannot be made or written to.
     """
     probe = folder / ".writable"
+    missing: list[Path] = []
     try:
+        missing += (each for each in (folder, *folder.parents) if not each.exists())
         folder.mkdir(parents=True, exist_ok=True)
         probe.touch()
         probe.unlink()
     except OSError as error:
+        for made in missing:
+            with suppress(OSError):
+                made.rmdir()
         raise CommandError(
             f"{folder}: must be a folder that can be written to ({error.strerror})"
         ) from None

@@ -284,3 +284,14 @@ def nested(key: str, value: Any) -> dict[str, Any]:
     """Return the mapping in which the dotted key has this value, and nothing else."""
     first, dot, rest = key.partition(".")
     return {first: nested(rest, value) if dot else value}
+
+
+def dotted(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return nested settings by dotted key."""
+    flat: dict[str, Any] = {}
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            flat.update(dotted(value, f"{prefix}{key}."))
+        else:
+            flat[f"{prefix}{key}"] = value
+    return flat

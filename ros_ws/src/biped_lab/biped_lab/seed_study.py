@@ -4,7 +4,8 @@
 
 What follows `--` goes to `biped learn`. Each seed is a process of its own; its figures
 are appended to `runs.jsonl` in the folder, and a seed that stands there already is not
-run again, so an interrupted study goes on where it stopped.
+run again, so an interrupted study goes on where it stopped. A folder holds one study:
+runs with other settings or another end are not taken for its own, but refused.
 """
 
 from __future__ import annotations
@@ -18,15 +19,34 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from biped_bringup.cli.main import parser as biped_parser
+from biped_bringup.cli.options import settings_of
+from biped_bringup.run_settings import changes_in_words
+from biped_common.command_line import (
+    WRONG_INPUT,
+    CommandError,
+    CommandParser,
+    positive,
+    writable_folder,
+)
+from biped_common.errors import BipedError
+from biped_common.settings import to_mapping
+
 RUNS_FILE = "runs.jsonl"
 
 
 def main() -> int:
-    """Run the study; exit status 1 if a run could not be carried out."""
+    """Run the study; exit status 1 if a run could not be carried out, 2 if refused."""
     options = _parser().parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
     runs_file = options.out / RUNS_FILE
-    done = read_runs(runs_file)
+    try:
+        study = study_of(options.learn)
+        done = read_runs(runs_file)
+        check_runs(done, study, runs_file)
+        writable_folder(options.out)
+    except BipedError as error:
+        print(error, file=sys.stderr)
+        return WRONG_INPUT
     missing = [seed for seed in options.seeds if seed not in {r["seed"] for r in done}]
     failed = False
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -37,11 +57,47 @@ def main() -> int:
                 print(f"seed {run['seed']}: {run['error']}", file=sys.stderr)
                 failed = True
                 continue
+            run["end"] = study["end"]
             with runs_file.open("a") as file:
                 file.write(json.dumps(run) + "\n")
             print(_row(run), flush=True)
     print(summary([r for r in read_runs(runs_file) if r["seed"] in options.seeds]))
     return 1 if failed else 0
+
+
+def study_of(learn_options: list[str]) -> dict[str, Any]:
+    """Return what all runs of a study have in common: `settings`, and when they `end`.
+
+    Raises:
+        SettingsError: the options of `biped learn` hold a wrong setting.
+    """
+    words = ["learn", *learn_options]
+    options = biped_parser(words).parse_args(words)
+    return {
+        "settings": to_mapping(settings_of(options)),
+        "end": {
+            "episodes": options.episodes,
+            "stop_at_schedule": options.stop_at_schedule,
+        },
+    }
+
+
+def check_runs(runs: list[dict[str, Any]], study: dict[str, Any], file: Path) -> None:
+    """Refuse runs that are not of this study.
+
+    Raises:
+        CommandError: one has other settings or another end, or does not say.
+    """
+    for run in runs:
+        if not study.keys() <= run.keys():
+            what = "does not say its settings"
+        else:
+            what = changes_in_words({key: run[key] for key in study}, study)
+        if what:
+            raise CommandError(
+                f"{file}: seed {run['seed']} is of another study, {what}; take another "
+                "--out"
+            )
 
 
 def run_seed(seed: int, out: Path, learn_options: list[str]) -> dict[str, Any]:
@@ -130,12 +186,12 @@ def _seeds(text: str) -> list[int]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = CommandParser(
         prog="python -m biped_lab.seed_study", description=__doc__.splitlines()[0]
     )
     parser.add_argument("--seeds", type=_seeds, required=True, metavar="FIRST-LAST")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser.add_argument("--jobs", type=positive, default=2, help="runs at a time")
     parser.add_argument(
         "learn", nargs="*", metavar="-- LEARN_OPTION", help="for `biped learn`"
     )

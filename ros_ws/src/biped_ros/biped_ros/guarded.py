@@ -2,13 +2,13 @@
 
 What a handler cannot understand or must not act on never reaches robot or memory: the
 handler raises, the message is counted under its topic, and the first of its kind and
-then one a second is logged. A change of parameters that is refused says which and why.
-A request that is too large for any of its services is not answered in earnest.
+then one a second is logged. Who publishes what only another node may is named, and not
+heard. A change of parameters that is refused says which and why. A request that is too
+large for any of its services is not answered in earnest.
 """
 
 from __future__ import annotations
 
-import importlib
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -23,10 +23,12 @@ from rclpy.publisher import Publisher
 from rclpy.service import Service
 
 from biped_common.settings import AnySettings, SettingsError
+from biped_ros.messages import message_type
 from biped_ros.parameters import changed_settings, declared_settings
 from biped_ros.process import process_name
 from biped_ros.qos import qos_profile
 from biped_ros.requests import REQUEST_LIMIT_BYTES, is_too_large
+from biped_ros.sole_publisher import SolePublisherListener
 from msgs_json import topics
 from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError, RefusedMessageError
@@ -58,6 +60,8 @@ class GuardedNode(Node):  # type: ignore[misc]
         """Those that every node has, such as use_sim_time."""
         self._worst = DiagnosticStatus.OK
         self._remarks: dict[str, str] = {}
+        self._strangers: dict[str, str] = {}
+        """Who publishes beside the owner, by control topic."""
         self._rated: Counter[str] = Counter()
         self._rated_at = time.monotonic()
         self._diagnostics = self.publisher(topics.DIAGNOSTICS)
@@ -150,42 +154,39 @@ class GuardedNode(Node):  # type: ignore[misc]
             message_type(topic), topic.name, qos_profile(topic)
         )
 
-    def listen(self, topic: Topic, handle: Callable[[bytes], None]) -> None:
-        """Hand every message of a topic, as serialized bytes, to a guarded handler."""
+    def listen(
+        self,
+        topic: Topic,
+        handle: Callable[[bytes], None],
+        answers: Mapping[Publisher, str] | None = None,
+    ) -> None:
+        """Hand every message of a topic, as serialized bytes, to a guarded handler.
+
+        Of a control topic, only messages of its owner, while nobody else publishes on
+        it.
+
+        Args:
+            topic: to listen to.
+            handle: may refuse a message.
+            answers: to a control topic, publishers of the answers, and the node that
+                waits for each. Middleware connects publishers and subscribers one by
+                one: a node that answers before its answer is wanted speaks to nobody,
+                and the walk waits in vain. So messages come once answers get through.
+        """
 
         def received(message: bytes) -> None:
             self.counts[f"{topic.name} received"] += 1
             self.guarded(topic, handle, bytes(message))
 
-        self.create_subscription(
-            message_type(topic), topic.name, received, qos_profile(topic), raw=True
-        )
+        def ready() -> bool:
+            return all(self.reaches(who, peer) for who, peer in (answers or {}).items())
 
-    def listen_once_heard(
-        self,
-        topic: Topic,
-        handle: Callable[[bytes], None],
-        answers: Mapping[Publisher, str],
-    ) -> None:
-        """Listen to a topic as soon as the answers to it reach whom they are for.
-
-        Middleware connects publishers and subscribers one by one: a node that answers
-        before its answer is wanted speaks to nobody, and the first walk waits in vain.
-
-        Args:
-            topic: to listen to.
-            handle: as for `listen`.
-            answers: publishers of the answers, and the node that waits for each.
-        """
-
-        def look() -> None:
-            if all(
-                self.reaches(publisher, peer) for publisher, peer in answers.items()
-            ):
-                timer.cancel()
-                self.listen(topic, handle)
-
-        timer = self.create_timer(_LOOK_PERIOD_S, look)
+        if topic.owner is None:
+            self.create_subscription(
+                message_type(topic), topic.name, received, qos_profile(topic), raw=True
+            )
+        else:
+            SolePublisherListener(self, topic, received, self.stranger, ready)
 
     def reaches(self, publisher: Publisher, *peers: str) -> bool:
         """Return whether a publisher is connected to all its subscribers on the graph.
@@ -218,6 +219,24 @@ class GuardedNode(Node):  # type: ignore[misc]
         self.counts[f"{name} {kind}"] += 1
         self.remark(DiagnosticStatus.WARN, f"{name} {kind}", str(error))
         self.get_logger().warning(f"{name}: {kind}: {error}", throttle_duration_sec=1.0)
+
+    def stranger(self, topic: Topic, text: str | None) -> None:
+        """Take note of who publishes on a control topic beside its owner.
+
+        Args:
+            topic: with an owner.
+            text: names them; None where there is nobody, or nobody any more.
+        """
+        if text is not None:
+            self.remark(DiagnosticStatus.ERROR, f"{topic.name} stranger", text)
+        if text == self._strangers.get(topic.name):
+            return
+        if text is None:
+            del self._strangers[topic.name]
+            self.get_logger().info(f"{topic.name}: nobody publishes beside its owner")
+        else:
+            self._strangers[topic.name] = text
+            self.get_logger().error(text, throttle_duration_sec=0.2)
 
     def dropped(self, topic: Topic, messages: int) -> None:
         """Count messages that were sent but never came."""
@@ -265,9 +284,3 @@ class GuardedNode(Node):  # type: ignore[misc]
         self._diagnostics.publish(array)
         self._worst = DiagnosticStatus.OK
         self._remarks.clear()
-
-
-def message_type(topic: Topic) -> Any:
-    """Return the message class of a topic."""
-    package, _, name = topic.type_name.split("/")
-    return getattr(importlib.import_module(f"{package}.msg"), name)

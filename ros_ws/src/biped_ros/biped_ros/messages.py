@@ -1,9 +1,11 @@
-"""Templates of the graph's standard messages, and what their numbers mean."""
+"""Types and templates of the graph's messages, and what their numbers mean."""
 
 from __future__ import annotations
 
+import importlib
 import struct
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import Vector3Stamped
@@ -13,6 +15,7 @@ from rclpy.serialization import deserialize_message
 from biped_common.timing import CONTROL_PERIOD_US
 from biped_ros.cdr import MessageTemplate, read_stamp
 from msgs_json.segment import WaistSegment
+from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError
 
 WORLD_FRAME = "world"
@@ -22,6 +25,12 @@ _AXES = 3
 _LENGTH = struct.Struct("<I")  # of a sequence
 _TRANSFORM_BYTES = 7 * 8
 _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
+
+
+def message_type(topic: Topic) -> Any:
+    """Return the message class of a topic."""
+    package, _, name = topic.type_name.split("/")
+    return getattr(importlib.import_module(f"{package}.msg"), name)
 
 
 def clock_template() -> MessageTemplate:

@@ -21,6 +21,7 @@ from biped_common.settings import (
     Declaration,
     SettingsError,
     declarations,
+    dotted,
     from_mapping,
     nested,
     overlay,
@@ -89,15 +90,10 @@ def parameters_of(settings: Any) -> list[Parameter]:
     ]
 
 
-def flattened(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+def flattened(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return nested settings by dotted name, as parameter files want them."""
-    flat: dict[str, Any] = {}
-    for key, value in values.items():
-        if isinstance(value, Mapping):
-            flat.update(flattened(value, f"{prefix}{key}."))
-        elif value != []:  # an empty list has no type in ROS
-            flat[f"{prefix}{key}"] = value
-    return flat
+    # An empty list has no type in ROS.
+    return {name: value for name, value in dotted(values).items() if value != []}
 
 
 def _mapping(parameters: Iterable[Parameter]) -> Mapping[str, Any]:

@@ -7,7 +7,8 @@ Commands are entry points of the group `ros2.commands`, the verbs of one of them
 of `ros2.<command>_verbs`, such as `ros2.topic_verbs`; any package may add to both. The
 object is a module. The first line of its docstring is the help; it has two functions,
 `add_arguments(parser)` and `main(args) -> int`, the exit status. A command with verbs
-has neither: its module is the package of the folder where they stand. A verb is
+is the package of the folder where they stand, and needs neither; with them, it can be
+called without a verb, too, as `ros2 doctor`. A verb is
 imported only when it was chosen, a command also for the help of `ros2` alone: what it
 takes long to import, it imports in `main`.
 

@@ -20,7 +20,8 @@ from typing import Any
 from biped_common.command_line import INTERRUPTED
 from biped_common.errors import BipedError
 from biped_common.signals import loading
-from biped_common.verbs import docstring_of, use_verbs
+from biped_common.terminal_text import printable_output
+from biped_common.verbs import docstring_of, entry_points, use_verbs
 from ros2_verbs import real_ros2
 from ros2_verbs.environment import prepare_environment
 
@@ -61,6 +62,11 @@ def run(args: argparse.Namespace) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # Whoever reads a pipe sees each message when it comes.
         sys.stdout.reconfigure(line_buffering=True)
+    with printable_output():
+        return _status_of(args)
+
+
+def _status_of(args: argparse.Namespace) -> int:
     try:
         status: int = args.run(args)
         sys.stdout.flush()
@@ -105,18 +111,21 @@ def _add_verbs(parsers: Any, group: str, names: Sequence[str]) -> None:
         text = module.__doc__ or "" if called else docstring_of(point)
         text = text.partition("\n")[0].rstrip(".")
         parser = parsers.add_parser(point.name, help=text, description=text)
-        parser.set_defaults(parser=parser)
+        # Not the run of a command above it, should it be found to be meant after all.
+        parser.set_defaults(parser=parser, run=None)
         if not called:
             return
-        if group == COMMANDS and not hasattr(module, "main"):
+        below = f"ros2.{point.name}_verbs"
+        has_verbs = group == COMMANDS and bool(entry_points(below))
+        if hasattr(module, "main") or not has_verbs:
+            module.add_arguments(parser)
+            parser.set_defaults(run=module.main)
+        if has_verbs:
             verbs = parser.add_subparsers(
                 title="Verbs",
                 metavar=f"Call `ros2 {point.name} <verb> -h` for more detailed usage.",
             )
-            _add_verbs(verbs, f"ros2.{point.name}_verbs", names[1:])
-        else:
-            module.add_arguments(parser)
-            parser.set_defaults(run=module.main)
+            _add_verbs(verbs, below, names[1:])
 
     use_verbs(group, names, add)
 

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
+from collections.abc import Callable, Sequence
 from typing import Any
+
+from biped_common.terminal_text import printable
 
 DISCOVERY_S = 0.5
 
@@ -33,10 +37,26 @@ def add_node_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def completed(action: argparse.Action, completer: Any) -> None:
-    """Have argcomplete ask a function for an argument's values."""
+def completed(action: argparse.Action, completer: Callable[..., Sequence[str]]) -> None:
+    """Have argcomplete ask a function for an argument's values.
+
+    Those that would act on the terminal are not offered.
+    """
+
+    def fit(**asked: Any) -> list[str]:
+        offered = completer(**asked)
+        return [word for word in offered if printable(word, layout=True) == word]
+
     # argcomplete looks for this attribute, which argparse does not declare.
-    action.completer = completer  # type: ignore[attr-defined]
+    action.completer = fit  # type: ignore[attr-defined]
+
+
+def regular_expression(text: str) -> re.Pattern[str]:
+    """Compile a regular expression."""
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f"{text}: {error}") from None
 
 
 def positive_int(text: str) -> int:

@@ -26,7 +26,7 @@ class PlaybackClock:
             now_ns: the present, of a clock that never goes back.
             paused: begin paused.
         """
-        self._rate = rate
+        self.rate = rate
         self._log_ns = log_ns
         self._since_ns = now_ns
         self._steps = 0
@@ -36,7 +36,7 @@ class PlaybackClock:
         """Return when a message is due, None while that is unknown: paused."""
         if self.paused:
             return self._since_ns if self._steps else None
-        return self._since_ns + round((log_ns - self._log_ns) / self._rate)
+        return self._since_ns + round((log_ns - self._log_ns) / self.rate)
 
     def achieved_rate(self, log_ns: int, now_ns: int) -> float:
         """Return the rate at which it has come to a log time since it last went on."""
@@ -52,8 +52,8 @@ class PlaybackClock:
         """Stop; return whether it was playing."""
         if self.paused:
             return False
-        if self._rate != FLAT_OUT:
-            self._log_ns += round((now_ns - self._since_ns) * self._rate)
+        if self.rate != FLAT_OUT:
+            self._log_ns += round((now_ns - self._since_ns) * self.rate)
         self._since_ns = now_ns
         self.paused = True
         return True
@@ -72,6 +72,13 @@ class PlaybackClock:
         if self.paused:
             self._steps += 1
         return self.paused
+
+    def set_rate(self, rate: float, now_ns: int) -> None:
+        """Play on at another rate, from where it is now."""
+        if not self.paused:
+            self._log_ns += round((now_ns - self._since_ns) * self.rate)
+            self._since_ns = now_ns
+        self.rate = rate
 
     def restart(self, log_ns: int, now_ns: int) -> None:
         """Begin again at a log time, playing or paused as before."""

@@ -25,7 +25,8 @@ from std_srvs.srv import Trigger
 from biped_bag.player.player import Player
 from biped_bag.qos import playing_qos
 from biped_bag.storage.contents import BagMessage, BagTopic
-from biped_ros.guarded import message_type
+from biped_common.terminal_text import printable
+from biped_ros.messages import message_type
 from msgs_json.topics import Topic
 
 NAME = "player"
@@ -98,9 +99,7 @@ class PlayerNode(Node):  # type: ignore[misc]
             if not missing and not alone and now - settled >= _SETTLED_S:
                 return
             if now - began > _MATCHING_S:
-                self.get_logger().warning(
-                    f"not every subscriber is connected: {', '.join(missing)}"
-                )
+                self._warn(f"not every subscriber is connected: {', '.join(missing)}")
                 return
             time.sleep(_TURN_S)
 
@@ -121,7 +120,7 @@ class PlayerNode(Node):  # type: ignore[misc]
                 Duration(seconds=_ACKNOWLEDGED_S)
             ):
                 output.window = 0
-                self.get_logger().warning(
+                self._warn(
                     f"{name}: a subscriber does not acknowledge; it may miss messages"
                 )
 
@@ -134,13 +133,17 @@ class PlayerNode(Node):  # type: ignore[misc]
         try:
             kind = message_type(Topic(name, topic.type_name))
         except (ImportError, AttributeError, ValueError):
-            self.get_logger().warning(
+            self._warn(
                 f"{name} is left out: no package has its type, {topic.type_name}"
             )
             return
         profile = playing_qos(topic)
         publisher = self.create_publisher(kind, published_as, profile)
         self._outputs[name] = _Output(publisher, _window(profile))
+
+    def _warn(self, text: str) -> None:
+        # ROS logs past Python's streams; names of a bag are anybody's.
+        self.get_logger().warning(printable(text))
 
     def _subscribers_on_graph(self) -> int:
         return sum(

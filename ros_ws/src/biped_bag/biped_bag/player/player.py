@@ -55,6 +55,7 @@ class Player:
         *,
         paused: bool = False,
         loop: bool = False,
+        delay_s: float = 0.0,
     ) -> None:
         """Prepare.
 
@@ -66,11 +67,12 @@ class Player:
             rate: as of PlaybackClock.
             paused: begin paused.
             loop: play again and again.
+            delay_s: waited before each pass, also while paused.
         """
         self._messages = messages
         self._publish = publish
         self._start_ns, self._end_ns = start_ns, end_ns
-        self._rate, self._loop = rate, loop
+        self._loop, self._delay_s = loop, delay_s
         self._changed = threading.Condition()
         self._stopped = False
         self.lag: Lag | None = None
@@ -86,6 +88,11 @@ class Player:
     def playing(self) -> bool:
         """Whether there is more to come."""
         return self._thread.is_alive()
+
+    @property
+    def rate(self) -> float:
+        """Recorded time per time, as asked for last."""
+        return self._clock.rate
 
     def start(self) -> None:
         """Begin to play."""
@@ -121,6 +128,16 @@ class Player:
         """Publish the next message and stay paused; return whether it was paused."""
         return self._change(self._clock.step)
 
+    def toggle_paused(self) -> bool:
+        """Stop or go on; return whether it is paused now."""
+        return self.pause() or not self.resume()
+
+    def set_rate(self, rate: float) -> None:
+        """Play on at another rate, above 0 and finite; not when playing FLAT_OUT."""
+        with self._changed:
+            self._clock.set_rate(rate, time.monotonic_ns())
+            self._changed.notify()
+
     def _change(self, change: Callable[[], bool]) -> bool:
         with self._changed:
             changed = change()
@@ -139,6 +156,8 @@ class Player:
     def _play_once(self) -> bool:
         """Return whether the end was reached."""
         with self._changed:
+            if self._delay_s:
+                self._changed.wait_for(lambda: self._stopped, self._delay_s)
             self._clock.restart(self._start_ns, time.monotonic_ns())
         for message in self._messages():
             if not self._await(message.log_ns):
@@ -165,7 +184,7 @@ class Player:
         return False
 
     def _take_note(self, log_ns: int, now_ns: int, late_ns: int) -> None:
-        if not self._clock.paused and self._rate != FLAT_OUT:
+        if not self._clock.paused and self._clock.rate != FLAT_OUT:
             self._worst_ns = max(self._worst_ns, late_ns)
             if late_ns > _LAG_NS and self.lag is None:
                 rate = self._clock.achieved_rate(log_ns, now_ns)

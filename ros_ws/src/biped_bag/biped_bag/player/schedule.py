@@ -14,7 +14,6 @@ from biped_bag.storage.contents import BagMessage
 from biped_common.timing import NS_PER_S
 from msgs_json.topics import CLOCK
 
-_CLOCK_PERIOD_NS = 10_000_000
 _CLOCK = struct.Struct("<4sII")
 _ENCAPSULATION = b"\0\1\0\0"
 
@@ -65,7 +64,7 @@ def with_clock(
     messages: Iterable[BagMessage],
     start_ns: int,
     end_ns: int,
-    period_ns: int = _CLOCK_PERIOD_NS,
+    period_ns: int,
 ) -> Iterator[BagMessage]:
     """Yield the messages with the log time on /clock in between, from start to end."""
     tick_ns = start_ns

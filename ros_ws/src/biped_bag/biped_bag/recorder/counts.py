@@ -1,6 +1,7 @@
 """What was received, written and lost, topic by topic: in the bag, and for people.
 
-`received` is what came, `written` what is in the bag of it, `lost` what its publishers
+`received` is what came, `written` what is in the bag of it (not what came while the
+recorder was paused, or before simulated time), `lost` what its publishers
 sent in between and did not come, `earlier` what they had sent before the recorder was
 connected to them, and `repeated` latched messages written again at the start of a
 further file.

@@ -3,6 +3,9 @@
 Messages are taken out of the middleware's queues in turns, with the times and numbers
 that it keeps with them: this costs 2 us a message where a callback costs 20. The node
 that holds the subscriptions must therefore not be given to an executor.
+
+In simulated time a message's log time is that of the last message on /clock that had
+been received before it; what came before the first one is left out.
 """
 
 from __future__ import annotations
@@ -19,7 +22,8 @@ from rclpy.subscription import Subscription
 
 from biped_bag.qos import RECORDED_DEPTH, as_rosbag2, receives_from, recording_qos
 from biped_bag.recorder.continuity import Continuity
-from biped_bag.recorder.selection import Selection
+from biped_bag.recorder.sim_time import SimTime
+from biped_bag.selection import Selection
 from biped_bag.storage.contents import BagMessage, BagTopic, OfferedQos
 from biped_ros.qos import qos_profile
 from msgs_json.topics import Topic
@@ -51,6 +55,8 @@ class Intake:
         selection: Selection,
         announce: Callable[[BagTopic], None],
         warn: Callable[[str], None],
+        *,
+        sim_time: bool = False,
     ) -> None:
         """Listen to nothing yet.
 
@@ -59,7 +65,10 @@ class Intake:
             selection: of topics.
             announce: told of a topic once, before its first message is taken.
             warn: told, once, of every topic that cannot be recorded in full.
+            sim_time: whether log times are simulated time.
         """
+        self.paused = False
+        """What comes meanwhile is taken, and left out."""
         self.topics: dict[str, IncomingTopic] = {}
         self._listener = listener
         self._selection = selection
@@ -67,18 +76,20 @@ class Intake:
         self._warn = warn
         self._given_up: set[str] = set()
         self._held: list[BagMessage] = []
+        self._sim_time = SimTime(listener) if sim_time else None
 
     def expect(self, topics: Iterable[Topic]) -> None:
         """Listen to topics that will be published as their contract says."""
         for topic in topics:
-            if self._selection.wants(topic.name):
+            if self._selection.wants(topic.name, [topic.type_name]):
                 qos = recording_qos([qos_profile(topic)])
                 self._listen(topic.name, topic.type_name, qos)
 
     def look_around(self) -> None:
         """Listen to what has come up on the graph."""
         for name, type_names in self._listener.get_topic_names_and_types():
-            if name in self._given_up or not self._selection.wants(name):
+            wanted = self._selection.wants(name, type_names)
+            if name in self._given_up or not wanted:
                 continue
             there = self._listener.count_publishers(name)
             topic = self.topics.get(name)
@@ -96,6 +107,8 @@ class Intake:
         for topic in self.topics.values():
             self._take_all(topic, horizon_ns, batch)
         batch.sort(key=lambda message: message.log_ns)
+        if self._sim_time is not None:
+            batch = list(self._sim_time.stamped(batch))
         return batch
 
     def _take_all(
@@ -108,13 +121,15 @@ class Intake:
                 if taken is None:
                     return
                 topic.received += 1
+                data, about = taken
+                number = about["publication_sequence_number"]
+                topic.continuity.take(number)
+                if self.paused:
+                    continue
                 if not topic.announced:
                     self._meet(topic.name, topic.type_name)
                 if not topic.announced:
                     self._make_known(topic, [as_rosbag2(topic.qos)])
-                data, about = taken
-                number = about["publication_sequence_number"]
-                topic.continuity.take(number)
                 message = BagMessage(
                     topic.name,
                     data,

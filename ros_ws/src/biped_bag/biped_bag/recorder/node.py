@@ -4,7 +4,9 @@
 
 records until SIGINT or SIGTERM (settings.py lists the parameters). `log_time` is when
 the middleware received a message and `publish_time` when its publisher sent it, both
-wall clock, as rosbag2 of Jazzy has it; `sequence` is the publisher's own number.
+wall clock, as rosbag2 of Jazzy has it; `sequence` is the publisher's own number. With
+`sim_time`, `log_time` is the time of /clock. With `start_paused`, what comes is left
+out until the service ~/resume is called.
 
 What failures do:
     the folder is a bag already, cannot be written to, or the disk gets full: reported
@@ -19,18 +21,19 @@ from __future__ import annotations
 import json
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
 from mcap.records import Attachment
+from std_srvs.srv import Trigger
 
 from biped_bag.errors import BagError
 from biped_bag.recorder.counts import counts_of, counts_table
 from biped_bag.recorder.episodes import EpisodeRecords
 from biped_bag.recorder.intake import Intake
-from biped_bag.recorder.selection import selection_of
 from biped_bag.recorder.settings import RecorderSettings
 from biped_bag.recorder.writer_thread import WriterThread
 from biped_bag.records import (
@@ -44,6 +47,7 @@ from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.layout import fresh_folder
 from biped_bag.storage.writer import BagWriter
 from biped_common.settings import SettingsError, from_json
+from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
 from biped_ros.running import run_node
 from msgs_json import topics
@@ -72,7 +76,7 @@ class RecorderNode(GuardedNode):
         self._settings = self.settings_from_parameters(RecorderSettings)
         if not self._settings.folder:
             raise SettingsError("folder", "", "must name the folder of the bag")
-        selection = selection_of(self._settings)
+        selection = self._settings.selection()
         self._error = ""
         self._recording: WriterThread | None = None
         self._episodes = EpisodeRecords()
@@ -83,7 +87,18 @@ class RecorderNode(GuardedNode):
             enable_rosout=False,
             start_parameter_services=False,
         )
-        self._intake = Intake(self._listener, selection, self._announce, self._warn)
+        self._intake = Intake(
+            self._listener,
+            selection,
+            self._announce,
+            self._warn,
+            sim_time=self._settings.sim_time,
+        )
+        if self._settings.start_paused:
+            # For strangers on the graph only where it was asked for.
+            self._intake.paused = True
+            self.create_service(Trigger, "~/pause", partial(self._answer, True))
+            self.create_service(Trigger, "~/resume", partial(self._answer, False))
         try:
             self._recording = self._begun()
         except (BagError, OSError) as error:
@@ -95,6 +110,13 @@ class RecorderNode(GuardedNode):
             )
         self.create_timer(_TURN_S, self._turn)
         self.create_timer(_LOOK_PERIOD_S, self._intake.look_around)
+
+    def toggle_paused(self) -> bool:
+        """Pause, or go on; return whether it is paused now."""
+        self._hear()  # what came before belongs to what was before
+        self._intake.paused = not self._intake.paused
+        self.get_logger().info("Paused." if self._intake.paused else "Recording.")
+        return self._intake.paused
 
     def close(self) -> None:
         """Write what has come, finish the bag, and say what was received and lost."""
@@ -118,7 +140,7 @@ class RecorderNode(GuardedNode):
             recording.close({STATE_KEY: state, LOST_KEY: str(lost)})
             bag = recording.writer
             for line in counts_table(counts_of(incoming, bag), bag.folder):
-                self.get_logger().info(line)
+                self.get_logger().info(printable(line))
         self._listener.destroy_node()
         if self._error:
             # The last word: the supervisor tells it on.
@@ -132,6 +154,15 @@ class RecorderNode(GuardedNode):
             "messages lost": str(sum(topic.continuity.lost for topic in incoming)),
             "topics": str(sum(topic.announced for topic in incoming)),
         }
+
+    def _answer(
+        self, pause: bool, _: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        response.success = self._intake.paused != pause
+        if response.success:
+            self.toggle_paused()
+        response.message = "paused" if self._intake.paused else "recording"
+        return response
 
     def _begun(self) -> WriterThread:
         """Begin the bag.
@@ -202,7 +233,7 @@ class RecorderNode(GuardedNode):
             self._recording.do(lambda bag: bag.add_topic(topic))
 
     def _warn(self, text: str) -> None:
-        self.get_logger().warning(text)
+        self.get_logger().warning(printable(text))
         self.remark(DiagnosticStatus.WARN, text, text)
 
     def _stop_recording(self, reason: str) -> None:

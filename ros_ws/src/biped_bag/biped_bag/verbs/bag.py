@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from biped_common.terminal_text import printable_output
 from biped_common.verbs import add_verbs
 
 
@@ -38,7 +39,8 @@ def add_bag_verb(
         name: of the sub-verb.
         summary: one line, for the list of sub-verbs.
         description: docstring of its module, with the exit statuses, for its help.
-        run: runs it and returns the exit status.
+        run: runs it and returns the exit status; what it prints is made printable,
+            for names and contents of a bag are anybody's.
         bag: what the bag is called in the help.
     """
     parser: argparse.ArgumentParser = verbs.add_parser(
@@ -48,5 +50,10 @@ def add_bag_verb(
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("bag", type=Path, metavar=bag, help="folder or MCAP file")
-    parser.set_defaults(run=run)
+
+    def run_printably(options: argparse.Namespace) -> int:
+        with printable_output():
+            return run(options)
+
+    parser.set_defaults(run=run_printably)
     return parser

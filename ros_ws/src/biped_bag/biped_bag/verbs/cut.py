@@ -11,7 +11,6 @@ Exit status:
 from __future__ import annotations
 
 import argparse
-import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,7 +19,12 @@ from typing import Any
 from biped_bag.cut import cut, stretch_of_episodes, stretch_of_time
 from biped_bag.storage.reader import BagReader
 from biped_bag.verbs.bag import add_bag_verb
-from biped_common.command_line import CommandError, add_json_option, print_json
+from biped_common.command_line import (
+    CommandError,
+    add_json_option,
+    duration_s,
+    print_json,
+)
 
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
@@ -37,10 +41,10 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "out", type=Path, metavar="OUT", help="folder of the new bag; must not exist"
     )
     parser.add_argument(
-        "--start", type=_seconds, metavar="S", help="[s] from the bag's first message"
+        "--start", type=duration_s, metavar="S", help="[s] from the bag's first message"
     )
     parser.add_argument(
-        "--end", type=_seconds, metavar="S", help="[s] from the bag's first message"
+        "--end", type=duration_s, metavar="S", help="[s] from the bag's first message"
     )
     parser.add_argument(
         "--episodes",
@@ -79,13 +83,6 @@ def run(options: argparse.Namespace) -> int:
             f"in {options.out}"
         )
     return 0
-
-
-def _seconds(text: str) -> float:
-    value = float(text)
-    if not math.isfinite(value) or value < 0:
-        raise argparse.ArgumentTypeError(f"{text}: must be at least 0 s")
-    return value
 
 
 def _episodes(text: str) -> tuple[int, int]:

@@ -21,6 +21,7 @@ from typing import Any
 
 from biped_bag.player.clock import FLAT_OUT
 from biped_bag.player.play import PlayRequest, play
+from biped_bag.selection import Selection
 from biped_bag.storage.reader import BagReader
 from biped_bag.verbs.bag import add_bag_verb
 from biped_common.command_line import DONE, INTERRUPTED, CommandError, natural
@@ -30,6 +31,8 @@ from biped_ros.environment import (
     LAST_DOMAIN,
     node_environment,
 )
+
+_CLOCK_PERIOD_NS = 10_000_000
 
 
 def add_parser(verbs: Any, _: Sequence[str]) -> None:
@@ -51,7 +54,9 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser.add_argument(
         "--duration", metavar="S", help="play S seconds of it (default: to its end)"
     )
-    parser.add_argument("--topics", nargs="+", metavar="TOPIC", help="play these only")
+    parser.add_argument(
+        "--topics", nargs="+", default=[], metavar="TOPIC", help="play these only"
+    )
     parser.add_argument(
         "--remap",
         action="append",
@@ -105,9 +110,9 @@ def _request(options: argparse.Namespace) -> PlayRequest:
         rate=FLAT_OUT if options.flat_out else _number("--rate", options.rate),
         start_s=_number("--start", options.start, or_zero=True),
         duration_s=None if duration is None else _number("--duration", duration),
-        topics=None if options.topics is None else tuple(options.topics),
+        selection=Selection(frozenset(options.topics), include_hidden=True),
         remaps=dict(_remap(text) for text in options.remap),
-        clock=options.clock,
+        clock_period_ns=_CLOCK_PERIOD_NS if options.clock else None,
         paused=options.paused,
         loop=options.loop,
     )

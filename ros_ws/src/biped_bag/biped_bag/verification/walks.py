@@ -159,7 +159,7 @@ class _Gathering:
         self._walks[-1].observations.append(observation)
 
     def _take_part(self, status: LearnerStatus | None) -> None:
-        if self._walks and status is not None and status.active:
+        if self._walks and status is not None:
             self._walks[-1].learners.add(status.instance)
 
     def _end(self, result: EpisodeResult) -> Iterator[RecordedWalk]:

@@ -14,7 +14,7 @@ from biped_bringup.cli.figures import figures_text
 from biped_bringup.cli.options import (
     add_replay_options,
     add_settings_options,
-    names_settings,
+    gone_on_with,
     replay_bytes_of,
     settings_of,
 )
@@ -27,7 +27,9 @@ from biped_common.command_line import (
     NOT_ACHIEVED,
     CommandError,
     add_json_option,
+    duration_s,
     natural,
+    positive,
     print_json,
     writable_folder,
 )
@@ -53,7 +55,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "--seed", type=natural, metavar="N", help="of every random draw (default 0)"
     )
     parser.add_argument(
-        "--episodes", type=natural, metavar="N", help="give up after N episodes in all"
+        "--episodes", type=positive, metavar="N", help="give up after N episodes in all"
     )
     parser.add_argument(
         "--stop-at-schedule",
@@ -73,14 +75,16 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "--resume",
         type=Path,
         metavar="FILE",
-        help=f"go on from a {MEMORY_FILE}, bit for bit as if never interrupted",
+        help=f"go on from a {MEMORY_FILE}, with its settings and seed, bit for bit as "
+        "if never interrupted; with --set or --config, as another run under other "
+        "settings",
     )
     parser.add_argument(
         "--fresh", action="store_true", help=f"replace a {MEMORY_FILE} in --out"
     )
     parser.add_argument(
         "--checkpoint-every",
-        type=float,
+        type=duration_s,
         default=20.0,
         metavar="S",
         help="seconds of real time between saves (default 20)",
@@ -94,6 +98,10 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 def run(options: argparse.Namespace) -> int:
     """Learn and report."""
     training = _training(options)
+    nothing = training.nothing_to_do(options.episodes, options.stop_at_schedule)
+    if nothing is not None:
+        training.close()
+        return _report_nothing(training, nothing, options)
     folder = writable_folder(
         options.out
         or (options.resume.parent if options.resume is not None else _DEFAULT_OUT)
@@ -109,6 +117,11 @@ def run(options: argparse.Namespace) -> int:
     if training.version_changes:
         changes = ", ".join(training.version_changes)
         console.print(f"going on with other versions, not bit for bit: {changes}")
+    if training.setting_changes:
+        changes = training.setting_changes
+        console.print(
+            f"going on under other settings, not bit for bit: {changes}", soft_wrap=True
+        )
     try:
         with stop_requests() as stops, TrainingProgress(training, console) as progress:
             saved = time.monotonic()
@@ -132,22 +145,33 @@ def run(options: argparse.Namespace) -> int:
         print_json(summary)
     else:
         _print(summary, folder, interrupted=bool(stops))
-    if stops:
-        return INTERRUPTED
-    done = summary["schedule_complete"] if options.stop_at_schedule else summary["completed"]  # fmt: skip  # noqa: E501
-    return DONE if done else NOT_ACHIEVED
+    return INTERRUPTED if stops else _status(summary, options)
 
 
 def _training(options: argparse.Namespace) -> TrainingRun:
     if options.resume is None:
         seed = 0 if options.seed is None else options.seed
         return TrainingRun(settings_of(options), seed, replay_bytes_of(options))
-    if names_settings(options) or options.seed is not None:
-        raise CommandError(
-            "--resume: goes on with the settings and the seed of the file; "
-            "--preset, --config, --set and --seed cannot be given with it"
-        )
-    return TrainingRun.load(options.resume, replay_bytes_of(options))
+    if options.fresh:
+        raise CommandError("--fresh: learns anew, which --resume does not")
+    return gone_on_with(options, options.resume, replay_bytes_of(options), learns=True)
+
+
+def _status(summary: dict[str, Any], options: argparse.Namespace) -> int:
+    done = "schedule_complete" if options.stop_at_schedule else "completed"
+    return DONE if summary[done] else NOT_ACHIEVED
+
+
+def _report_nothing(
+    training: TrainingRun, reason: str, options: argparse.Namespace
+) -> int:
+    """Say that a resumed run has come to its end already; nothing is written."""
+    summary = training.summary(options.resume)
+    if options.json:
+        print_json(summary)
+    else:
+        print(f"nothing to do with {options.resume}: {reason}")
+    return _status(summary, options)
 
 
 def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:

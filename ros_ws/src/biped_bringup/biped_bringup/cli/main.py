@@ -12,16 +12,24 @@ import sys
 from collections.abc import Sequence
 
 import argcomplete
+from argcomplete.finders import safe_actions
 
-from biped_common.command_line import INTERRUPTED, WRONG_INPUT, CommandError
+from biped_common.command_line import (
+    INTERRUPTED,
+    WRONG_INPUT,
+    CommandError,
+    CommandParser,
+    StoreOnce,
+)
 from biped_common.errors import BipedError
 from biped_common.signals import loading
+from biped_common.terminal_text import printable
 from biped_common.verbs import add_verbs
 
 
 def parser(words: Sequence[str] = ()) -> argparse.ArgumentParser:
     """Return the parser for a command line; without words that of all verbs."""
-    top = argparse.ArgumentParser(
+    top = CommandParser(
         prog="biped",
         description="A simulated biped learns the waist trajectory of dynamic walking "
         "by exploitation-oriented learning with fixed-mode states.",
@@ -41,13 +49,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except CommandError as error:
         print(f"biped: {error}", file=sys.stderr)
         return WRONG_INPUT
+    safe_actions.add(StoreOnce)
     argcomplete.autocomplete(commands)
     options = commands.parse_args(arguments)
     try:
         status: int = options.run(options)
         sys.stdout.flush()
     except BipedError as error:
-        print(f"biped {options.verb}: {error}", file=sys.stderr)
+        print(f"biped {options.verb}: {printable(str(error))}", file=sys.stderr)
         return WRONG_INPUT
     except BrokenPipeError:
         # Whoever read the output has seen enough; Python must not flush it again.

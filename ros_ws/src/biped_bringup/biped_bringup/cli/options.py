@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from biped_bringup.memory_settings import with_changes
 from biped_bringup.replay import DEFAULT_MEMORY_BYTES
 from biped_bringup.run_settings import (
     DEFAULT_PRESET,
@@ -12,7 +13,8 @@ from biped_bringup.run_settings import (
     RunSettings,
     load_settings,
 )
-from biped_common.command_line import natural
+from biped_bringup.training import TrainingRun
+from biped_common.command_line import CommandError, natural
 
 _MEGABYTE = 1_000_000
 
@@ -40,7 +42,9 @@ def add_settings_options(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="KEY=VALUE",
         help="change one setting, e.g. learner.schedule.successes_per_subtask=5 or "
-        "gait.double_support_s=1.0 [s]; repeatable; `biped check --show` lists all",
+        "gait.double_support_s=1.0 [s]; repeatable; `biped check --show` lists all. Of "
+        "a memory's settings, those in sim can be changed, and to learn on those in "
+        "learner.schedule",
     )
 
 
@@ -79,6 +83,42 @@ def preset_of(options: argparse.Namespace) -> str:
     return options.preset or DEFAULT_PRESET
 
 
-def names_settings(options: argparse.Namespace) -> bool:
-    """Return whether any of the settings options was given."""
-    return bool(options.preset or options.config or options.changes)
+def gone_on_with(
+    options: argparse.Namespace,
+    memory_file: Path,
+    replay_bytes: int = DEFAULT_MEMORY_BYTES,
+    *,
+    learns: bool,
+) -> TrainingRun:
+    """Return the run of a memory, under the settings that the options change.
+
+    Args:
+        options: of the command.
+        memory_file: what the run goes on with.
+        replay_bytes: memory for the replay of walks, 0 to compute them all.
+        learns: learning goes on; else one walk is walked, greedily.
+
+    Raises:
+        CheckpointError: the file is no memory.
+        CommandError, SettingsError: an option changes what belongs to the memory.
+    """
+    if options.preset is not None:
+        raise CommandError(
+            f"--preset {options.preset}: a memory brings its own settings; --set and "
+            "--config change them"
+        )
+    if learns and options.seed is not None:
+        raise CommandError(f"--seed {options.seed}: a memory brings its own seed")
+    run = TrainingRun.load(memory_file, replay_bytes)
+    try:
+        settings = with_changes(
+            run.settings, options.config, options.changes, learns=learns
+        )
+        if settings == run.settings:
+            return run
+        changed = run.under(settings, replay_bytes)
+    except BaseException:
+        run.close()
+        raise
+    run.close()
+    return changed

@@ -14,7 +14,7 @@ from biped_bag.records import run_record
 from biped_bringup.cli.learn import MEMORY_FILE
 from biped_bringup.cli.options import (
     add_settings_options,
-    names_settings,
+    gone_on_with,
     preset_of,
     settings_of,
 )
@@ -40,6 +40,7 @@ from biped_common.command_line import (
     NODE_FAILURE,
     CommandError,
     natural,
+    positive,
     writable_folder,
 )
 from biped_common.settings import to_mapping
@@ -81,12 +82,14 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser.add_argument(
         "--greedy",
         action="store_true",
-        help=f"walk once, greedily, from the {MEMORY_FILE} in --out; learn nothing",
+        help=f"walk once, greedily, from the {MEMORY_FILE} in --out; learn nothing; "
+        "--seed is that of the disturbances, if any",
     )
     parser.add_argument(
         "--resume",
         action="store_true",
-        help=f"go on from the {MEMORY_FILE} in --out, with its settings and seed",
+        help=f"go on from the {MEMORY_FILE} in --out, with its settings and seed; with "
+        "--set or --config, as another run under other settings",
     )
     parser.add_argument(
         "--fresh",
@@ -95,7 +98,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     )
     parser.add_argument("--seed", type=natural, metavar="N", help="default 0")
     parser.add_argument(
-        "--episodes", type=natural, metavar="N", help="end after N learning episodes"
+        "--episodes", type=positive, metavar="N", help="end after N learning episodes"
     )
     parser.add_argument(
         "--out",
@@ -144,7 +147,8 @@ def run(options: argparse.Namespace) -> int:
     names = _nodes(options.nodes)
     folder = writable_folder(options.out).resolve()
     memory_file = folder / MEMORY_FILE
-    settings, seed = _settings_and_seed(options, memory_file)
+    learned = _learned(options, memory_file)
+    settings, seed = _settings_and_seed(options, learned)
     # Refuses here a gait that the robot cannot walk.
     WaistReference(Robot(settings.robot), settings.gait, settings.correction)
     bag = bag_folder(options, names)
@@ -175,15 +179,19 @@ def run(options: argparse.Namespace) -> int:
         parameters[RECORDER] = recorder_parameters(
             bag, run_data, begun_with, options.record_split
         )
+    # A learner that finds its memory goes on from it.
     if options.fresh:
-        # A learner that finds its memory goes on from it.
         memory_file.unlink(missing_ok=True)
+    elif learned is not None and learned.setting_changes and not options.greedy:
+        learned.save(memory_file)
     domain = private_domain() if options.domain is None else options.domain
     environment = node_environment(domain, options.discovery)
     os.environ.update(environment)  # the supervisor's own node, too
     screen = StatusScreen(Console(stderr=True), live=not options.no_view)
     with stop_requests() as stops, screen:
         screen.line(NAME, f"ROS_DOMAIN_ID={domain}, {options.discovery}")
+        if learned is not None and learned.setting_changes:
+            screen.line(NAME, f"other settings: {learned.setting_changes}")
         supervisor = Supervisor(
             {name: parameters[name] for name in names},
             environment,
@@ -219,6 +227,8 @@ def run(options: argparse.Namespace) -> int:
 def _walked(graph: GraphWatch) -> bool:
     """Return whether the walk is over; one cut short by the machine is repeated."""
     result = graph.result
+    if graph.unseen is not None:
+        return True
     return result is not None and (
         result.end_cause not in (EndCause.LATE, EndCause.PEER_SILENT)
         or graph.results >= _ATTEMPTS
@@ -233,23 +243,25 @@ def _nodes(text: str) -> list[str]:
     return names
 
 
-def _settings_and_seed(
-    options: argparse.Namespace, memory_file: Path
-) -> tuple[RunSettings, int]:
+def _learned(options: argparse.Namespace, memory_file: Path) -> TrainingRun | None:
+    """Return the run that is gone on with, under the options' settings, if any."""
     if options.greedy or options.resume:
         if options.fresh:
             raise CommandError("--fresh: cannot be given with --greedy or --resume")
-        if names_settings(options) or options.seed is not None:
-            raise CommandError(
-                "--greedy, --resume: go on with the settings and the seed of the "
-                "memory; --preset, --config, --set and --seed cannot be given with them"
-            )
-        learned = TrainingRun.load(memory_file)
+        learned = gone_on_with(options, memory_file, learns=not options.greedy)
         learned.close()
-        return learned.settings, learned.seed
+        return learned
     if memory_file.exists() and not options.fresh:
         raise CommandError(
             f"{memory_file}: is there already; give --resume to go on with it, "
             "--fresh to replace it, or another --out"
         )
-    return settings_of(options), options.seed or 0
+    return None
+
+
+def _settings_and_seed(
+    options: argparse.Namespace, learned: TrainingRun | None
+) -> tuple[RunSettings, int]:
+    if learned is None:
+        return settings_of(options), options.seed or 0
+    return learned.settings, learned.seed if options.seed is None else options.seed

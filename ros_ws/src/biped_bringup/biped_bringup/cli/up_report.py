@@ -30,6 +30,7 @@ def report(
     lines, achieved = (_walked if options.greedy else _learned)(supervisor)
     if lines and not options.greedy:
         lines.append(f"memory  {memory_file}")
+    lines += [f"stranger  {text}" for text in supervisor.graph.strangers.values()]
     print("\n".join(lines))
     if interrupted:
         print(f"interrupted; go on with biped up --resume --out {options.out}")
@@ -43,7 +44,10 @@ def report(
 
 
 def _walked(supervisor: Supervisor) -> tuple[list[str], bool]:
-    result = supervisor.graph.result
+    result, unseen = supervisor.graph.result, supervisor.graph.unseen
+    if unseen is not None:
+        line = f"the robot's observations do not bear out: {unseen.end_cause}"
+        return [f"{line} after {seconds(unseen.control_ticks):g} s"], False
     if result is None:
         return [], False
     line = (

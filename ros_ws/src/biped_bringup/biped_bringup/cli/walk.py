@@ -11,8 +11,11 @@ import msgspec
 import numpy as np
 import yaml
 
-from biped_bringup.cli.options import add_settings_options, settings_of
-from biped_bringup.run_settings import changed_settings
+from biped_bringup.cli.options import (
+    add_settings_options,
+    gone_on_with,
+    settings_of,
+)
 from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_bringup.zmp_figure import FIGURE_SUFFIXES, ZmpTrace, draw_zmp
@@ -43,7 +46,10 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "--memory", type=Path, metavar="FILE", help="what `biped learn` wrote"
     )
     source.add_argument(
-        "--static", action="store_true", help="the static walk, without correction"
+        "--static",
+        action="store_true",
+        help="the static walk, without correction; at the default difficulty it leaves "
+        "its ZMP limit, and does not fall",
     )
     parser.add_argument(
         "--tds",
@@ -71,10 +77,16 @@ def run(options: argparse.Namespace) -> int:
         options.changes.append(f"gait.double_support_s={_yaml_number(options.tds)}")
     if options.figure is not None:
         _check_figure(options.figure)
-    result, sha256 = _walk(options)
+    learned = None
+    if options.memory is not None:
+        learned = gone_on_with(options, options.memory, learns=False)
+        learned.close()
+    result, sha256 = _walk(options, learned)
     if options.json:
         print_json(_summary(result, sha256))
     else:
+        if learned is not None and learned.setting_changes:
+            print(f"other settings       {learned.setting_changes}")
         _print(result, sha256)
         if options.figure is not None:
             print(f"picture of the ZMP   {options.figure}")
@@ -94,21 +106,10 @@ def _check_figure(path: Path) -> None:
         raise CommandError(f"--figure {path}: must be a file in a folder that exists")
 
 
-def _walk(options: argparse.Namespace) -> tuple[EpisodeResult, str]:
-    learned = None
-    if options.memory is not None:
-        if options.preset is not None:
-            raise CommandError("--preset: a memory brings its own settings")
-        learned = TrainingRun.load(options.memory)
-        learned.close()
-        settings = changed_settings(learned.settings, options.config, options.changes)
-        if settings.learner != learned.settings.learner:
-            raise CommandError(
-                "--set, --config: with --memory, only robot, gait, correction and sim "
-                "can be changed; the learner's settings belong to the memory"
-            )
-    else:
-        settings = settings_of(options)
+def _walk(
+    options: argparse.Namespace, learned: TrainingRun | None
+) -> tuple[EpisodeResult, str]:
+    settings = settings_of(options) if learned is None else learned.settings
     trace = ZmpTrace()
     walker = Walker(settings, np.random.default_rng(options.seed), trace.add)
     try:

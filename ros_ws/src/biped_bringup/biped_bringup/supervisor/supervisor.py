@@ -51,6 +51,10 @@ _TURN_S = 0.1
 class Patience:
     """How long the supervisor waits for what [s]."""
 
+    discovery_s: float = 1.0
+    """To learn who is on the graph, before the first node is started."""
+    predecessor_s: float = 8.0
+    """For the nodes of a run that was killed to be off the graph; their lease is 5."""
     ready_s: float = 60.0
     """For a node to appear on the graph; the first start compiles."""
     silence_s: float = 15.0
@@ -108,6 +112,7 @@ class Supervisor:
             NodeFailureError: a node could not be started or kept running.
         """
         for child in self.children.values():
+            self._await_turn(child, stopped)
             if stopped():
                 return
             self._start(child, stopped)
@@ -137,6 +142,23 @@ class Supervisor:
                     child.signal(signal.SIGCONT)
                     child.wait(self._patience.end_s)
         self.graph.close()
+
+    def _await_turn(self, child: Child, stopped: Callable[[], bool]) -> None:
+        """Wait until nobody else publishes what a node is to publish.
+
+        The nodes of a run that was killed stay on the graph for a while.
+        """
+        end = time.monotonic() + self._patience.predecessor_s
+        while not stopped() and (
+            (other := self.graph.taken(child.name))
+            or self.graph.watched_s < self._patience.discovery_s
+        ):
+            self.graph.spin(_TURN_S)
+            if other and time.monotonic() > end:
+                raise NodeFailureError(
+                    f"{child.name} cannot be started: {other}; end that, or take "
+                    "another domain"
+                )
 
     def _start(self, child: Child, stopped: Callable[[], bool]) -> None:
         self.graph.expect(child.name, process_name(child.start()))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from biped_common.terminal_text import printable
+
 _NARROWEST = 8
 _GAP = 4
 
@@ -33,7 +35,7 @@ class Area:
 def complaints(areas: Iterable[Area]) -> list[str]:
     """Return one line for each warning and error."""
     return [
-        f"UserWarning: {text}"
+        printable(f"UserWarning: {text}")
         for area in areas
         for text in (*area.warnings, *(f"ERROR: {error}" for error in area.errors))
     ]
@@ -56,5 +58,5 @@ def report(area: Area) -> str:
     """Return the report: a title, and names and values in two columns."""
     width = max((len(name) for name, _ in area.items), default=0)
     width = width + _GAP if width >= _NARROWEST else _NARROWEST
-    lines = [f"{name:{width}}: {value}" for name, value in area.items]
+    lines = [printable(f"{name:{width}}: {value}") for name, value in area.items]
     return "\n".join([f"\n   {area.title}", *lines])

@@ -80,14 +80,26 @@ class EndpointKind:
         return whole_graph(args, lambda node: self.known(node, hidden=hidden))
 
     def await_types(
-        self, node: Node, name: str, args: argparse.Namespace
+        self,
+        node: Node,
+        name: str,
+        args: argparse.Namespace,
+        *,
+        at_once: bool = True,
     ) -> Sequence[str]:
-        """Return the types under a name as soon as it is known, none if it never is."""
+        """Return the types under a name, none if it never is known.
+
+        Args:
+            node: to look from.
+            name: from the root.
+            args: of the verb.
+            at_once: as soon as it is known; else those who have it get time, too.
+        """
 
         def types() -> Sequence[str]:
             return dict(self.known(node, hidden=args.include_hidden)).get(name, [])
 
-        discover(args, lambda: bool(types()), at_once=True)
+        discover(args, lambda: bool(types()), at_once=at_once)
         return types()
 
     def complete_names(self, parsed_args: argparse.Namespace, **_: Any) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from rclpy.node import Node
 
+from biped_common.terminal_text import printable
 from ros2_verbs.graph.session import glance
 from ros2_verbs.options import completed
 
@@ -78,4 +79,4 @@ def add_count_argument(parser: argparse.ArgumentParser, things: str) -> None:
 def print_listed(args: argparse.Namespace, lines: Sequence[str]) -> None:
     """Print a line each, or how many there are."""
     for line in [str(len(lines))] if args.only_count else lines:
-        print(line)
+        print(printable(line))

@@ -19,11 +19,12 @@ from rosidl_parser.definition import (
     NamespacedType,
 )
 
+from biped_common.terminal_text import printable
+
 _SEQUENCES = (list, tuple, array.array, np.ndarray)
 _CUT = "..."
 # libyaml takes a C integer; lines of text are not folded.
 _ENDLESS = 2**31 - 1
-_LINE_ENDS = "\x85\u2028\u2029"
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,18 @@ def to_plain(
 
 def to_yaml(message: Any, shown: Shown = EVERYTHING, flow_style: bool = False) -> str:
     """Return a message as YAML, with a line's end."""
-    plain = to_plain(message, shown)
+    return plain_to_yaml(to_plain(message, shown), flow_style)
+
+
+def plain_to_yaml(plain: dict[str, Any], flow_style: bool = False) -> str:
+    """Return what `to_plain` returned, perhaps changed, as YAML."""
     text = _dump(plain, yaml.CSafeDumper, flow_style)
     if "\\" in text:
         # libyaml is twenty times as quick, but escapes what is beyond 16 bits.
         text = _dump(plain, yaml.SafeDumper, flow_style)
-    if any(line_end in text for line_end in _LINE_ENDS):
-        # Written as they are, they would be read as the ends of lines.
+    if printable(text, layout=True) != text:
+        # YAML's own escapes, so that it is read as what it was. Some of what libyaml
+        # writes as it is are ends of lines to a reader.
         text = _dump(plain, yaml.CSafeDumper, flow_style, allow_unicode=False)
     return text
 
@@ -90,7 +96,9 @@ def to_json(value: Any) -> str:
         plain = _decoded(value, otherwise=value)
     else:
         plain = _plain(value, EVERYTHING, None, octets=False)
-    return json.dumps(_finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
+    text = _json(plain)
+    # JSON's own escapes where some are needed.
+    return text if printable(text, layout=True) == text else _json(plain, ascii=True)
 
 
 def fields_of(message: Any) -> list[tuple[str, Any]]:
@@ -124,6 +132,10 @@ def _dump(
         default_flow_style=flow_style,
     )
     return text
+
+
+def _json(plain: Any, *, ascii: bool = False) -> str:
+    return json.dumps(_finite(plain), indent=2, ensure_ascii=ascii, allow_nan=False)
 
 
 def _plain(value: Any, shown: Shown, kind: Any, octets: bool) -> Any:

@@ -13,6 +13,7 @@ from rclpy.action import (
 from rclpy.node import Node
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
+from biped_common.terminal_text import printable
 from ros2_verbs.errors import VerbError
 from ros2_verbs.graph.endpoints import NamesAndTypes
 from ros2_verbs.graph.names import NodeName, add_node_name_argument, node_names
@@ -69,11 +70,11 @@ def report(
         sections: title, and names with their types.
         hidden: with hidden names.
     """
-    lines = [name.full]
+    lines = [printable(name.full)]
     for title, entries in sections:
         lines.append(f"  {title}:")
         shown = [
-            f"    {entry}: {', '.join(types)}"
+            printable(f"    {entry}: {', '.join(types)}")
             for entry, types in entries
             if hidden or not topic_or_service_is_hidden(entry)
         ]

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 
 from rclpy.node import Node
 
+from biped_common.terminal_text import printable
 from ros2_verbs.errors import VerbError
 from ros2_verbs.graph.names import node_names
 from ros2_verbs.graph.session import discover, graph_node, settled
+from ros2_verbs.options import regular_expression
 from ros2_verbs.param.services import (
     ParameterServices,
     add_asked_node_arguments,
@@ -36,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--filter",
-        type=_pattern,
+        type=regular_expression,
         metavar="REGEX",
         help="only list parameters matching the provided regular expression",
     )
@@ -52,7 +53,7 @@ def main(args: argparse.Namespace) -> int:
     """
     with graph_node(args) as node:
         if args.node_name:
-            print(*_lines(args, connect(node, args)), sep="\n")
+            print(*map(printable, _lines(args, connect(node, args))), sep="\n")
             return 0
         discover(args, settled(node))
         status = 0
@@ -63,7 +64,7 @@ def main(args: argparse.Namespace) -> int:
                 print(error, file=sys.stderr)
                 status = 1
             else:
-                print(f"{name}:", *lines, sep="\n")
+                print(*map(printable, [f"{name}:", *lines]), sep="\n")
     return status
 
 
@@ -90,10 +91,3 @@ def _nodes_with_parameters(node: Node, *, hidden: bool) -> list[str]:
             if f"{name.full}/list_parameters" in services
         }
     )
-
-
-def _pattern(text: str) -> re.Pattern[str]:
-    try:
-        return re.compile(text)
-    except re.error as error:
-        raise argparse.ArgumentTypeError(f"{text}: {error}") from None

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import yaml
@@ -17,7 +17,11 @@ from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 
 from ros2_verbs.errors import VerbError
 from ros2_verbs.graph.names import NodeName
-from ros2_verbs.param.services import add_asked_node_arguments, parameter_services
+from ros2_verbs.param.services import (
+    ParameterServices,
+    add_asked_node_arguments,
+    parameter_services,
+)
 
 _WILDCARD = "/**"
 _KEY = "ros__parameters"
@@ -37,6 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Set what the file says, one by one; status 1 if the node refused any.
 
+    A value that the node has already is no refusal: what was dumped can be loaded.
+
     Raises:
         VerbError: the file is none for this node, or the node is not there.
     """
@@ -46,13 +52,32 @@ def main(args: argparse.Namespace) -> int:
         wildcard=not args.no_use_wildcard,
     )
     with parameter_services(args) as services:
-        results = services.set(parameters)
+        results = _set(services, parameters)
     for parameter, result in zip(parameters, results, strict=True):
         print(
             loaded_text(parameter.name, result),
             file=sys.stdout if result.successful else sys.stderr,
         )
     return 0 if all(result.successful for result in results) else 1
+
+
+def _set(
+    services: ParameterServices, parameters: Sequence[Parameter]
+) -> list[SetParametersResult]:
+    results = services.set(parameters)
+    refused = [
+        parameter.name
+        for parameter, result in zip(parameters, results, strict=True)
+        if not result.successful
+    ]
+    declared = sorted({*services.names()}.intersection(refused)) if refused else []
+    there = dict(zip(declared, services.values(declared), strict=True))
+    return [
+        SetParametersResult(successful=True, reason="unchanged")
+        if there.get(parameter.name) == parameter.get_parameter_value()
+        else result
+        for parameter, result in zip(parameters, results, strict=True)
+    ]
 
 
 def loaded_text(name: str, result: SetParametersResult) -> str:

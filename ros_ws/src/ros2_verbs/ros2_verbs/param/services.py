@@ -114,6 +114,11 @@ class ParameterServices:
             raise VerbError(str(error)) from None
         return list(self._answer(future).results)
 
+    def delete(self, name: str) -> Any:
+        """Delete a parameter; return its SetParametersResult."""
+        (result,) = self._answer(self._client.delete_parameters([name])).results
+        return result
+
     def _answer(self, future: Future) -> Any:
         if not spin(self._node, future, _ANSWER_S):
             raise VerbError(

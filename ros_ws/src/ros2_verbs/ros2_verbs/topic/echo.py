@@ -16,16 +16,11 @@ from ros2_verbs.graph.endpoints import TOPICS, class_of_topic, topic_types
 from ros2_verbs.graph.qos import add_qos_arguments, listening_profile
 from ros2_verbs.graph.session import caught, discover, graph_node, spin
 from ros2_verbs.messages.filter import message_filter
-from ros2_verbs.messages.text import Shown, to_csv, to_json, to_yaml
+from ros2_verbs.messages.shown import add_shown_arguments, shown_of
+from ros2_verbs.messages.text import to_csv, to_json, to_yaml
 from ros2_verbs.messages.types import complete_message_types, interface_class
-from ros2_verbs.options import (
-    add_graph_arguments,
-    completed,
-    positive_float,
-    unsigned_int,
-)
+from ros2_verbs.options import add_graph_arguments, completed, positive_float
 
-_LENGTH = 128
 _INFO_HEADING = "---Got new message, message info:---\n"
 _DATA_HEADING = "---Message data:---\n"
 
@@ -58,29 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--field", metavar="PATH", help="only this field, e.g. pose.pose.position"
     )
-    parser.add_argument(
-        "-f",
-        "--full-length",
-        action="store_true",
-        help="do not cut long arrays, bytes and strings",
-    )
-    parser.add_argument(
-        "-l",
-        "--truncate-length",
-        type=unsigned_int,
-        default=_LENGTH,
-        metavar="N",
-        help=f"cut arrays, bytes and strings to this length (default: {_LENGTH})",
-    )
-    parser.add_argument(
-        "--no-arr", action="store_true", help="do not print the elements of arrays"
-    )
-    parser.add_argument(
-        "--no-str", action="store_true", help="do not print the text of strings"
-    )
-    parser.add_argument(
-        "--flow-style", action="store_true", help="YAML in flow style, on one line"
-    )
+    add_shown_arguments(parser)
     parser.add_argument(
         "--no-lost-messages",
         action="store_true",
@@ -113,7 +86,8 @@ def main(args: argparse.Namespace) -> int:
     """Print messages until interrupted, or as the options say.
 
     Raises:
-        VerbError: the options or the topic's type are wrong, or it is not there.
+        VerbError: the options or the topic's type are wrong, it is not there, or the
+            one message that was asked for has not come in time.
     """
     echo = _Echo(args)
     with graph_node(args) as node:
@@ -138,7 +112,9 @@ def main(args: argparse.Namespace) -> int:
         )
         # The events executor cannot pass the info on.
         executor = SingleThreadedExecutor() if with_info else None
-        spin(node, echo.finished, args.timeout or math.inf, executor)
+        came = spin(node, echo.finished, args.timeout or math.inf, executor)
+    if args.once and not came:
+        raise VerbError(f"{args.topic_name}: no message came in {args.timeout:g} s")
     return 0
 
 
@@ -153,11 +129,7 @@ class _Echo:
         if args.field is not None and not self._path:
             raise VerbError(f"Invalid field value '{args.field}'")
         self._accepts = message_filter(args.filter)
-        self._shown = Shown(
-            length=None if args.full_length else args.truncate_length,
-            arrays=not args.no_arr,
-            strings=not args.no_str,
-        )
+        self._shown = shown_of(args)
 
     def take(self, message: Any, info: dict[str, Any] | None = None) -> None:
         """Print a message."""

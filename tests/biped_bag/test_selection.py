@@ -1,15 +1,21 @@
-"""Topics chosen by name, by pattern, by exclusion."""
+"""Topics chosen by name, type and pattern, and excluded."""
 
 import pytest
 
-from biped_bag.recorder.selection import selection_of
 from biped_bag.recorder.settings import RecorderSettings
 from biped_common.settings import SettingsError
+
+TYPES = {
+    "/clock": "rosgraph_msgs/msg/Clock",
+    "/biped/zmp": "geometry_msgs/msg/PointStamped",
+    "/biped/zmp_reference": "geometry_msgs/msg/PointStamped",
+}
 
 
 def wants(topic, **settings):
     """Return whether a topic is wanted with these settings."""
-    return selection_of(RecorderSettings(**settings)).wants(topic)
+    types = [TYPES.get(topic, "std_msgs/msg/String")]
+    return RecorderSettings(**settings).selection().wants(topic, types)
 
 
 def test_everything_is_recorded_unless_told_otherwise():
@@ -43,4 +49,19 @@ def test_hidden_topics_are_recorded_when_asked_for_or_named():
 
 def test_what_is_no_pattern_is_refused():
     with pytest.raises(SettingsError, match="regex = '\\['"):
-        selection_of(RecorderSettings(regex="["))
+        RecorderSettings(regex="[").selection()
+
+
+def test_types_select():
+    assert wants("/biped/zmp", topic_types="geometry_msgs/msg/PointStamped")
+    assert not wants("/clock", topic_types="geometry_msgs/msg/PointStamped")
+
+
+def test_names_and_types_add_up():
+    types = "geometry_msgs/msg/PointStamped"
+    assert wants("/clock", topics="/clock", topic_types=types)
+
+
+def test_a_topic_can_be_excluded_by_name():
+    assert not wants("/biped/zmp", exclude_topics="/clock biped/zmp")
+    assert wants("/biped/zmp_reference", exclude_topics="/clock biped/zmp")
