@@ -186,6 +186,17 @@ def test_live_changes_take_effect_and_change_no_walk(domain):
         assert hashes(session) == learned_in_process(EPISODES)
 
 
+# -- requests that are too large -------------------------------------------------------
+
+
+def test_a_request_for_too_many_descriptions_is_not_answered_in_earnest(standing):
+    service = "sim_node/describe_parameters"
+    names = ["timeout_s"] * 2000
+    answer = standing.call(DescribeParameters, f"/{service}", names=names)
+    assert list(answer.descriptors) == []
+    assert standing.graph.sim.counts[f"{service} refused"] == 1
+
+
 # -- the start -------------------------------------------------------------------------
 
 

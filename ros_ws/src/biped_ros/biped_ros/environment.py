@@ -6,6 +6,8 @@ import os
 import sys
 from pathlib import Path
 
+from biped_common.errors import BipedError
+
 # A private domain unless one is given: 0 is everybody's default, 101 the last that is
 # safe on every system.
 FIRST_PRIVATE_DOMAIN, LAST_PRIVATE_DOMAIN = 2, 101
@@ -16,6 +18,24 @@ DISCOVERY_RANGES = (LOCALHOST, "SUBNET")
 PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 PROFILE = Path(__file__).parent / "fastdds_profile.xml"
 LOOPBACK_PROFILE = Path(__file__).parent / "fastdds_loopback.xml"
+_SECURITY_VARIABLE = "ROS_SECURITY_ENABLE"
+
+
+class NoSecurityError(BipedError):
+    """DDS Security was asked for, and this middleware has none."""
+
+
+def refuse_security() -> None:
+    """Refuse DDS Security, which the Fast DDS of the wheels is built without.
+
+    Raises:
+        NoSecurityError: the environment asks for it.
+    """
+    if os.environ.get(_SECURITY_VARIABLE) == "true":  # as rcl reads it
+        raise NoSecurityError(
+            f"{_SECURITY_VARIABLE}=true: the Fast DDS of the wheels is built without "
+            "DDS Security; unset it (docs/security.md says what keeps strangers out)"
+        )
 
 
 def private_domain() -> int:
@@ -29,7 +49,11 @@ def node_environment(domain: int, discovery_range: str) -> dict[str, str]:
 
     Shared memory is off in both ranges; fastdds_loopback.xml says why, and keeps what
     is LOCALHOST on this machine. To a range of that name the middleware would add it.
+
+    Raises:
+        NoSecurityError: DDS Security is asked for.
     """
+    refuse_security()
     local = discovery_range == LOCALHOST
     return {
         **os.environ,

@@ -3,7 +3,8 @@
 What a handler cannot understand or must not act on never reaches robot or memory: the
 handler raises, the message is counted under its topic, and the first of its kind and
 then one a second is logged. Who publishes what only another node may is named, and not
-heard. A change of parameters that is refused says which and why.
+heard. A change of parameters that is refused says which and why. A request that is too
+large for any of its services is not answered in earnest.
 """
 
 from __future__ import annotations
@@ -19,12 +20,14 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
+from rclpy.service import Service
 
 from biped_common.settings import AnySettings, SettingsError
 from biped_ros.messages import message_type
 from biped_ros.parameters import changed_settings, declared_settings
 from biped_ros.process import process_name
 from biped_ros.qos import qos_profile
+from biped_ros.requests import REQUEST_LIMIT_BYTES, is_too_large
 from biped_ros.sole_publisher import SolePublisherListener
 from msgs_json import topics
 from msgs_json.topics import Topic
@@ -118,6 +121,31 @@ class GuardedNode(Node):  # type: ignore[misc]
                 self._changed(settings)
         return result
 
+    # -- services ------------------------------------------------------------------
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        **options: Any,
+    ) -> Service:
+        """Offer a service whose requests are bounded; rclpy's own come here, too.
+
+        To a request that is too large the answer is an empty one.
+        """
+
+        def bounded(request: Any, response: Any) -> Any:
+            if not is_too_large(request):
+                return callback(request, response)
+            error = RefusedMessageError(
+                f"a request of more than {REQUEST_LIMIT_BYTES} bytes"
+            )
+            self._refuse(srv_name, "refused", error)
+            return response
+
+        return super().create_service(srv_type, srv_name, bounded, **options)
+
     # -- messages ------------------------------------------------------------------
 
     def publisher(self, topic: Topic) -> Publisher:
@@ -185,11 +213,12 @@ class GuardedNode(Node):  # type: ignore[misc]
 
     def refuse(self, topic: Topic, kind: str, error: Exception) -> None:
         """Count a message that was not acted on."""
-        self.counts[f"{topic.name} {kind}"] += 1
-        self.remark(DiagnosticStatus.WARN, f"{topic.name} {kind}", str(error))
-        self.get_logger().warning(
-            f"{topic.name}: {kind}: {error}", throttle_duration_sec=1.0
-        )
+        self._refuse(topic.name, kind, error)
+
+    def _refuse(self, name: str, kind: str, error: Exception) -> None:
+        self.counts[f"{name} {kind}"] += 1
+        self.remark(DiagnosticStatus.WARN, f"{name} {kind}", str(error))
+        self.get_logger().warning(f"{name}: {kind}: {error}", throttle_duration_sec=1.0)
 
     def stranger(self, topic: Topic, text: str | None) -> None:
         """Take note of who publishes on a control topic beside its owner.

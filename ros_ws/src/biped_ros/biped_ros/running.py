@@ -14,7 +14,9 @@ from rclpy.task import Future
 
 from biped_common.command_line import WRONG_INPUT
 from biped_common.errors import BipedError
+from biped_ros.environment import NoSecurityError, refuse_security
 from biped_ros.guarded import GuardedNode
+from biped_ros.process import bound_memory
 
 REFUSED = 4
 # The events executor cannot be interrupted in an endless spin, so it spins in turns.
@@ -28,9 +30,14 @@ def run_node(make: Callable[[], GuardedNode]) -> int:
         The exit status: 0 after an orderly end, 2 for wrong input, 4 when the node gave
         up.
     """
+    bound_memory()
     # Signals end the loop below, not the middle of a callback.
     try:
+        refuse_security()
         rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+    except NoSecurityError as error:
+        print(f"cannot start: {error}", file=sys.stderr)
+        return WRONG_INPUT
     except RuntimeError as error:
         # A parameter file that is not there or is no YAML, or a word out of place.
         print(f"wrong arguments: {' '.join(str(error).split())}", file=sys.stderr)
