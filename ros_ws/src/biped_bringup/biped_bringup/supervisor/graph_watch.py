@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import time
+from collections import Counter, defaultdict
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import String
 
+from biped_common.terminal_text import printable
 from biped_ros.qos import qos_profile
 from msgs_json import topics
+from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.wire import MalformedMessageError, decode
@@ -39,11 +42,15 @@ class GraphWatch:
         self.status: LearnerStatus | None = None
         self.result: EpisodeResult | None = None
         self.results = 0
+        self.end_causes: Counter[EndCause] = Counter()
+        """How many walks ended by each cause."""
         self._expected: dict[str, str] = {}
         self.heard_at: dict[str, float] = {}
         """When each node's diagnostics last came, by name."""
         self.remarks: dict[str, str] = {}
         """What each node last said of itself."""
+        self.figures: defaultdict[str, dict[str, dict[str, str]]] = defaultdict(dict)
+        """What each node last measured, by name and process."""
         for topic, kind, handle in (
             (topics.LEARNER_STATUS, String, self._on_status),
             (topics.EPISODE, String, self._on_episode),
@@ -76,7 +83,7 @@ class GraphWatch:
         try:
             status = decode(LearnerStatus, message.data)
         except MalformedMessageError as error:
-            self._node.get_logger().warning(str(error))
+            self._node.get_logger().warning(printable(str(error)))
         else:
             if status.instance.endswith(self._expected.get(topics.LEARNER_NODE, "")):
                 self.status = status
@@ -85,12 +92,13 @@ class GraphWatch:
         try:
             result = decode(EpisodeResult, message.data)
         except MalformedMessageError as error:
-            self._node.get_logger().warning(str(error))
+            self._node.get_logger().warning(printable(str(error)))
         else:
             # Before the learner takes part, another one may have ended this walk.
             if self.status is not None and self.status.active:
                 self.result = result
                 self.results += 1
+                self.end_causes[result.end_cause] += 1
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
@@ -98,3 +106,6 @@ class GraphWatch:
             if status.hardware_id == process:
                 self.heard_at[status.name] = time.monotonic()
                 self.remarks[status.name] = status.message
+                self.figures[status.name][process] = {
+                    figure.key: figure.value for figure in status.values
+                }
