@@ -18,6 +18,7 @@ from biped_bringup.cli.options import (
     preset_of,
     settings_of,
 )
+from biped_bringup.cli.real_time import add_real_time_options, real_time_parameters
 from biped_bringup.cli.recording import (
     add_recording_options,
     bag_folder,
@@ -50,7 +51,6 @@ from biped_ros.environment import (
     node_environment,
     private_domain,
 )
-from msgs_json.end_cause import EndCause
 from trajectory_node.waist_reference import WaistReference
 
 # On a busy machine a peer can be too late in real time, which is not the walk's fault.
@@ -134,6 +134,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser.add_argument(
         "--no-view", action="store_true", help="plain lines instead of a live screen"
     )
+    add_real_time_options(parser)
     add_recording_options(parser)
     add_settings_options(parser)
     parser.set_defaults(run=run)
@@ -158,6 +159,7 @@ def run(options: argparse.Namespace) -> int:
         pace=options.pace,
         frozen=options.greedy,
         recorders=0 if bag is None else 1,
+        **real_time_parameters(options),
     ).flat()
     if bag is None:
         names = [name for name in names if name != RECORDER]
@@ -220,8 +222,7 @@ def _walked(graph: GraphWatch) -> bool:
     """Return whether the walk is over; one cut short by the machine is repeated."""
     result = graph.result
     return result is not None and (
-        result.end_cause not in (EndCause.LATE, EndCause.PEER_SILENT)
-        or graph.results >= _ATTEMPTS
+        not result.end_cause.from_outside or graph.results >= _ATTEMPTS
     )
 
 
