@@ -14,6 +14,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
+from std_msgs.msg import String
 
 from biped_bringup.supervisor.supervisor import Supervisor
 from biped_common.timing import CONTROL_PERIOD_US
@@ -21,8 +22,9 @@ from biped_ros.environment import node_environment, private_domain
 from biped_ros.messages import message_type
 from biped_ros.qos import qos_profile
 from msgs_json import topics
+from msgs_json.episode_result import EpisodeResult
+from msgs_json.wire import decode
 
-_TIMEOUT_S = 300.0
 # A serialized message with a header begins with its stamp.
 _CDR_HEADER_BYTES = 4
 _STAMP = struct.Struct("<iI")
@@ -38,6 +40,8 @@ class Listener:
         """When each message of /joint_states came."""
         self.control_ticks: list[int] = []
         """Of the simulation's clock, of each of these messages."""
+        self.results: list[EpisodeResult] = []
+        """Of the walks, as the learner tells them."""
         self.figures: dict[str, str] = {}
         """What sim_node last said in /diagnostics."""
         self._context = rclpy.Context()
@@ -49,6 +53,7 @@ class Listener:
         self._node = rclpy.create_node("listener", context=self._context)
         for topic, handle, raw in (
             (topics.JOINT_STATES, self._on_joint_states, True),
+            (topics.EPISODE, self._on_episode, False),
             (topics.DIAGNOSTICS, self._on_diagnostics, False),
         ):
             self._node.create_subscription(
@@ -78,6 +83,9 @@ class Listener:
         microseconds = seconds * 1_000_000 + nanoseconds // 1000
         self.control_ticks.append(microseconds // CONTROL_PERIOD_US)
 
+    def _on_episode(self, message: String) -> None:
+        self.results.append(decode(EpisodeResult, message.data))
+
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name == "sim_node":
@@ -87,6 +95,7 @@ class Listener:
 def run_graph(
     parameters: Mapping[str, Mapping[str, Any]],
     done: Callable[[Supervisor, Listener], bool],
+    timeout_s: float = 300.0,
 ) -> Listener:
     """Start the nodes, wait until `done`, end them, and return what was heard.
 
@@ -94,7 +103,7 @@ def run_graph(
         TimeoutError: it takes too long.
     """
     domain = private_domain()
-    end = time.monotonic() + _TIMEOUT_S
+    end = time.monotonic() + timeout_s
     with tempfile.TemporaryDirectory() as folder:
         listener = Listener(domain)
         supervisor = Supervisor(
@@ -111,5 +120,5 @@ def run_graph(
             supervisor.stop()
             listener.close()
     if time.monotonic() > end:
-        raise TimeoutError(f"the nodes were not done within {_TIMEOUT_S:g} s")
+        raise TimeoutError(f"the nodes were not done within {timeout_s:g} s")
     return listener

@@ -27,7 +27,7 @@ from biped_ros.guarded import GuardedNode
 from biped_ros.messages import correction_template
 from biped_ros.observation_gaps import ObservationGaps
 from biped_ros.process import process_name
-from biped_ros.running import run_node
+from biped_ros.running import claim_processor, run_node
 from biped_ros.sole_publisher import Publishers
 from learner_node.checkpoint import read_checkpoint, taking_over, write_checkpoint
 from learner_node.settings import LearnerNodeSettings
@@ -61,6 +61,7 @@ class LearnerNode(GuardedNode):
         """
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(LearnerNodeSettings, self._on_settings)
+        claim_processor(self, settings.processor)
         self._settings = settings
         # Who walks with the memory needs to know the gait, too; the learner does not.
         self._run_settings = {
@@ -184,10 +185,10 @@ class LearnerNode(GuardedNode):
         session = self.session
         frozen = self._settings.frozen
         walked = session.tally.evaluations if frozen else session.episodes
-        enough = 0 < self._settings.max_episodes <= walked
-        self._done = enough and not session.trial_due
-        due = session.episodes % every == 0 and not result.end_cause.from_outside
-        if self._save_due or self._done or due:
+        counts = not result.end_cause.from_outside
+        enough = 0 < self._settings.max_episodes <= walked and not session.trial_due
+        self._done = counts and enough
+        if self._save_due or self._done or (counts and session.episodes % every == 0):
             self.save()
             self._save_due = False
         self._publish_status()

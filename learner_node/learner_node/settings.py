@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from biped_common.settings import Settings, section, setting
+from biped_ros.processor import ProcessorSettings
 from learner_node.walking.settings import LearnerSettings
 
 
@@ -13,6 +14,7 @@ class LearnerNodeSettings(Settings):
     """The learner, its seed, and where it is kept."""
 
     learner: LearnerSettings = section(LearnerSettings)
+    processor: ProcessorSettings = section(ProcessorSettings)
     seed: int = setting(0, "", "of every random choice", lower=0, upper=2**63 - 1)
     walk_ticks: int = setting(
         5625, "control ticks", "the whole walk, the last target", lower=1

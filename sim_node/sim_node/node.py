@@ -17,7 +17,7 @@ from biped_description.robot import Robot
 from biped_ros.cdr import string_message, string_text
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import SegmentReader
-from biped_ros.running import run_node
+from biped_ros.running import claim_processor, run_node
 from biped_ros.sole_publisher import Publishers
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
@@ -58,6 +58,7 @@ class SimNode(GuardedNode):
         """
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(SimNodeSettings, self._on_settings)
+        claim_processor(self, settings.processor)
         self._settings = settings
         self._robot = Robot(settings.robot)
         plant_of(settings.sim.engine)  # one that is missing is refused here

@@ -166,7 +166,8 @@ class RealtimeLoop:
             self._serve_requests()
             if not self._paused and self._pilot.walking:
                 self._punctuality.late(lateness_ns)
-                self._punctuality.lost_ns += lateness_ns if stalled else 0
+                if stalled and self._pilot.biped.control_tick > 0:
+                    self._punctuality.lost_ns += lateness_ns
                 self._tick()
 
     def _serve_requests(self) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from biped_common.settings import Settings, SettingsError, section, setting
 from biped_description.settings import RobotSettings
+from biped_ros.processor import ProcessorSettings
 from sim_node.engines import ENGINES
 
 
@@ -107,6 +108,7 @@ class SimNodeSettings(Settings):
 
     robot: RobotSettings = section(RobotSettings)
     sim: SimSettings = section(SimSettings)
+    processor: ProcessorSettings = section(ProcessorSettings)
     seed: int = setting(0, "", "of the disturbances", lower=0, upper=2**63 - 1)
     pace: str = setting(
         "lockstep",

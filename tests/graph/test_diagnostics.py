@@ -7,6 +7,7 @@ from tests.graph.clients import TIMEOUT_S, Client, own_publisher, quick
 from tests.robots import SHIPPED
 
 from biped_bringup.one_executor import OneExecutor
+from biped_ros.processor import ProcessorSettings
 from msgs_json import topics
 from msgs_json.observation import Observation
 from msgs_json.wire import decode, encode
@@ -110,3 +111,34 @@ def test_a_stance_that_no_leg_reaches_is_refused(domain):
         assert graph.spin_until(
             lambda: graph.sim.counts["/biped/plan refused"] == 1, TIMEOUT_S
         )
+
+
+def test_a_pace_that_cannot_be_kept_is_told_with_figure_and_advice(domain):
+    parameters = quick(pace="realtime", realtime_factor=20.0)
+    with (
+        OneExecutor(parameters, domain) as graph,
+        Client(graph, topics.DIAGNOSTICS) as client,
+    ):
+        array = client.wait_for(
+            topics.DIAGNOSTICS,
+            lambda m: (
+                status_of("sim_node")(m)
+                and "real time is not kept" in m.status[0].message
+            ),
+        )
+    assert "20 asked for" in array.status[0].message
+    assert "walk in lockstep, or slower with realtime_factor 10" in (
+        array.status[0].message
+    )
+
+
+def test_what_the_machine_refuses_is_told_and_the_run_goes_on(domain):
+    nowhere = ProcessorSettings(cores=(1023,))
+    with (
+        OneExecutor(quick(processor=nowhere), domain) as graph,
+        Client(graph, topics.DIAGNOSTICS) as client,
+    ):
+        array = client.wait_for(topics.DIAGNOSTICS, status_of("sim_node"))
+        session = graph.learner.session
+        assert graph.spin_until(lambda: session.episodes >= 1, TIMEOUT_S)
+    assert "cores 1023 refused, goes on without" in array.status[0].message

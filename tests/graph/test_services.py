@@ -69,23 +69,35 @@ def test_a_paused_walk_goes_on_as_if_nothing_had_happened(domain, times):
 # -- reset -----------------------------------------------------------------------------
 
 
-def test_a_reset_ends_the_walk_without_blame(domain):
+def test_a_walk_that_was_reset_is_walked_again_as_if_nothing_had_happened(domain):
+    parameters = quick(max_episodes=EPISODES)
     with (
-        OneExecutor(quick(), domain) as graph,
+        OneExecutor(parameters, domain) as graph,
         Client(graph, topics.EPISODE) as client,
     ):
         pause_in_a_walk(graph, client)
         graph.spin_until(lambda: False, 0.2)
-        rules = graph.learner.session.learner.rules
-        blame = rules.p.copy()
         assert client.call(Trigger, RESET).success
-        results = client.messages[topics.EPISODE.name]
-        assert graph.spin_until(
-            lambda: results and result_of(results[-1]).end_cause is EndCause.RESET,
-            TIMEOUT_S,
-        )
-        assert result_of(results[-1]).reward == 0.0
-        assert (rules.p == blame).all()
+        client.call(SetBool, PAUSE, data=False)
+        session = graph.learner.session
+        assert graph.spin_until(lambda: session.episodes >= EPISODES, TIMEOUT_S)
+        assert hashes(session) == learned_in_process(EPISODES)
+        assert session.tally.given_up == {EndCause.RESET: 1}
+        ends = [result_of(m).end_cause for m in client.messages[topics.EPISODE.name]]
+        assert ends.count(EndCause.RESET) == 1
+
+
+def test_a_frozen_learner_is_not_done_with_a_walk_that_was_reset(domain):
+    parameters = quick(frozen=True, max_episodes=1)
+    with OneExecutor(parameters, domain) as graph, Client(graph) as client:
+        session = graph.learner.session
+        # As in a memory that was learned, trials included.
+        session.tally.evaluations = 1
+        assert graph.spin_until(lambda: session.walking, TIMEOUT_S)
+        client.call(SetBool, PAUSE, data=True)
+        assert client.call(Trigger, RESET).success
+        client.call(SetBool, PAUSE, data=False)
+        assert graph.spin_until(lambda: session.tally.evaluations == 2, TIMEOUT_S)
 
 
 @pytest.mark.parametrize("paused", [False, True])

@@ -15,7 +15,7 @@ from biped_ros.messages import (
     segment_values,
 )
 from biped_ros.observation_gaps import ObservationGaps
-from biped_ros.running import run_node
+from biped_ros.running import claim_processor, run_node
 from msgs_json import topics
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
@@ -41,6 +41,7 @@ class TrajectoryNode(GuardedNode):
         """
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(TrajectorySettings)
+        claim_processor(self, settings.processor)
         reference = WaistReference(
             Robot(settings.robot),
             settings.gait,

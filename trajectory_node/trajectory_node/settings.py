@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from biped_common.settings import Settings, SettingsError, section, setting
 from biped_common.timing import control_ticks
 from biped_description.settings import RobotSettings
+from biped_ros.processor import ProcessorSettings
 
 # A foot or the ZMP cannot be moved in less time than this.
 _SHORTEST_PHASE_S = 0.1
@@ -91,6 +92,7 @@ class TrajectorySettings(Settings):
     robot: RobotSettings = section(RobotSettings)
     gait: GaitSettings = section(GaitSettings)
     correction: CorrectionSettings = section(CorrectionSettings)
+    processor: ProcessorSettings = section(ProcessorSettings)
     correction_limit_m: float = setting(
         0.024, "m", "corrections beyond this are refused", above=0.0, upper=0.2
     )

@@ -9,6 +9,7 @@ from typing import Any
 from biped_bringup.run_settings import RunSettings
 from biped_common.settings import to_mapping
 from biped_ros.parameters import flattened
+from biped_ros.processor import ProcessorSettings
 from learner_node.settings import LearnerNodeSettings
 from msgs_json import topics
 from sim_node.settings import SimNodeSettings
@@ -44,6 +45,9 @@ def node_parameters(
     timeout_s: float = SimNodeSettings.timeout_s,
     listen_s: float = LearnerNodeSettings.listen_s,
     recorders: int = SimNodeSettings.recorders,
+    realtime_factor: float = SimNodeSettings.realtime_factor,
+    look_ahead_ticks: int = TrajectorySettings.look_ahead_ticks,
+    processor: ProcessorSettings | None = None,
 ) -> NodeParameters:
     """Return the settings of the three nodes.
 
@@ -58,14 +62,20 @@ def node_parameters(
         timeout_s: silence of a peer after which a walk is given up.
         listen_s: how long the learner listens for another one first.
         recorders: for which the robot waits with its first walk.
+        realtime_factor: simulated seconds per second, in real time.
+        look_ahead_ticks: control ticks of reference beyond a segment.
+        processor: what each of the three asks of the machine; None: nothing.
     """
     beside_learner = to_mapping(settings)
     del beside_learner["learner"]
+    processor = processor or ProcessorSettings()
     return NodeParameters(
         sim=SimNodeSettings(
             robot=settings.robot,
             sim=settings.sim,
+            processor=processor,
             seed=seed,
+            realtime_factor=realtime_factor,
             publish_every_ticks=publish_every_ticks,
             pace=pace,
             timeout_s=timeout_s,
@@ -75,10 +85,13 @@ def node_parameters(
             robot=settings.robot,
             gait=settings.gait,
             correction=settings.correction,
+            processor=processor,
             correction_limit_m=settings.learner.action.limit_m,
+            look_ahead_ticks=look_ahead_ticks,
         ),
         learner=LearnerNodeSettings(
             learner=settings.learner,
+            processor=processor,
             seed=seed,
             walk_ticks=settings.gait.walk_ticks,
             checkpoint_file=checkpoint_file,

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.executors import ExternalShutdownException
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
@@ -17,10 +18,18 @@ from biped_common.errors import BipedError
 from biped_ros.environment import NoSecurityError, refuse_security
 from biped_ros.guarded import GuardedNode
 from biped_ros.process import bound_memory
+from biped_ros.processor import ProcessorSettings, claim
 
 REFUSED = 4
 # The events executor cannot be interrupted in an endless spin, so it spins in turns.
 _TURN_S = 0.2
+
+
+def claim_processor(node: GuardedNode, settings: ProcessorSettings) -> None:
+    """Ask for priority, cores and memory; what is refused, the node says once."""
+    for text in claim(settings):
+        node.get_logger().warning(text)
+        node.remark(DiagnosticStatus.WARN, text, text)
 
 
 def run_node(make: Callable[[], GuardedNode]) -> int:

@@ -18,6 +18,7 @@ from biped_bringup.cli.options import (
     preset_of,
     settings_of,
 )
+from biped_bringup.cli.real_time import add_real_time_options, real_time_parameters
 from biped_bringup.cli.recording import (
     add_recording_options,
     bag_folder,
@@ -139,6 +140,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser.add_argument(
         "--no-view", action="store_true", help="plain lines instead of a live screen"
     )
+    add_real_time_options(parser)
     add_recording_options(parser)
     add_settings_options(parser)
     add_json_option(parser)
@@ -167,6 +169,7 @@ def run(options: argparse.Namespace) -> int:
             pace=options.pace,
             frozen=options.greedy,
             recorders=0 if bag is None else 1,
+            **real_time_parameters(options),
         ).flat()
     except SettingsError as error:
         option = _OPTIONS.get(error.key, error.key)
