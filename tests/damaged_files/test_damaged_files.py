@@ -28,6 +28,7 @@ from learner_node.checkpoint import read_checkpoint, write_checkpoint
 
 SEED = 20_261_124
 BAGS, METADATA, MEMORIES, SETTINGS = 500, 1500, 500, 500
+RECOVERED = 300
 TICKS_PER_CHUNK = 8
 
 
@@ -101,7 +102,9 @@ def test_of_a_damaged_bag_nothing_is_recovered_that_was_not_recorded(bag, tmp_pa
     recorded = Counter(sound["messages"])
     file, out = tmp_path / "bag_0.mcap", tmp_path / "out"
     wrong = []
-    for draw, damaged in damaged_copies((bag / "bag_0.mcap").read_bytes(), BAGS, 0):
+    for draw, damaged in damaged_copies(
+        (bag / "bag_0.mcap").read_bytes(), RECOVERED, 0
+    ):
         file.write_bytes(damaged)
         shutil.rmtree(out, ignore_errors=True)
         report = refusal(recover, file, out)
