@@ -17,7 +17,7 @@ class LearnerNodeSettings(Settings):
     processor: ProcessorSettings = section(ProcessorSettings)
     seed: int = setting(0, "", "of every random choice", lower=0, upper=2**63 - 1)
     walk_ticks: int = setting(
-        5625, "control ticks", "the whole walk, the last target", lower=1
+        5625, "control ticks", "the whole walk, the last target", lower=1, upper=10**6
     )
     listen_s: float = setting(
         1.5, "s", "listen for another learner before taking part", lower=0.0, upper=60.0

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import Settings, section, setting
+from biped_common.settings import Settings, SettingsError, section, setting
 from learner_node.methods import MethodSettings
+
+_MOST_JOINT = 100
 
 
 @dataclass(frozen=True)
@@ -109,3 +111,12 @@ class LearnerSettings(MethodSettings):
     cost: CostSettings = section(CostSettings)
     rewards: RewardSettings = section(RewardSettings)
     schedule: ScheduleSettings = section(ScheduleSettings)
+
+    def check_together(self) -> None:
+        """Refuse tables of joint rules that take all memory: Na^2 of them a state."""
+        if not self.xol.decomposed and self.action.alternatives > _MOST_JOINT:
+            raise SettingsError(
+                "action.alternatives",
+                self.action.alternatives,
+                f"must be at most {_MOST_JOINT} where xol.decomposed is false",
+            )

@@ -86,6 +86,13 @@ def test_metadata_that_are_at_odds_with_the_data_are_refused(broken):
         BagReader(broken)
 
 
+def test_another_distribution_than_the_data_tell_of_is_refused(broken):
+    file = broken / "metadata.yaml"
+    file.write_text(file.read_text().replace("jazzy", "jazzx"))
+    with pytest.raises(BagError, match="tells of ROS 'jazzx', but the data of 'jazzy'"):
+        BagReader(broken)
+
+
 def test_a_file_that_metadata_do_not_name_is_refused(broken):
     (broken / "bag_1.mcap").write_bytes((broken / "bag_0.mcap").read_bytes())
     with pytest.raises(BagError, match="does not list the files"):

@@ -21,6 +21,7 @@ from biped_bag.storage.reader import BagReader
 from biped_common.atomic_file import atomic_file
 
 _ROWS_PER_BATCH = 10_000
+_BYTES_PER_BATCH = 2**22  # of messages; as Python's objects they take ten times that
 
 
 @dataclass(frozen=True)
@@ -32,22 +33,9 @@ class ExportedTable:
     rows: int
 
 
-def _write_parquet(table: pa.Table, stream: IO[bytes]) -> None:
-    pa.parquet.write_table(table, stream)
-
-
-def _write_csv(table: pa.Table, stream: IO[bytes]) -> None:
-    """Write lists as JSON text: CSV has none."""
-    for i, column in enumerate(table.columns):
-        if pa.types.is_list(column.type):
-            texts = pa.array([json.dumps(value.as_py()) for value in column])
-            table = table.set_column(i, table.column_names[i], texts)
-    pa.csv.write_csv(table, stream)
-
-
-FORMATS: Mapping[str, Callable[[pa.Table, IO[bytes]], None]] = {
-    "parquet": _write_parquet,
-    "csv": _write_csv,
+FORMATS: Mapping[str, Callable[[IO[bytes], pa.Schema], Any]] = {
+    "parquet": pa.parquet.ParquetWriter,
+    "csv": pa.csv.CSVWriter,
 }
 
 
@@ -77,17 +65,24 @@ def export(
         for name in bag.chosen(topics)
         if bag.topics[name].count
     }
+    if len(set(files.values())) < len(files):
+        raise BagError(f"{bag.path}: topics whose tables would have the same name")
     there = [file for file in files.values() if file.exists()]
     if there and not replace:
         raise BagError(f"{there[0]}: is there already; --force replaces it")
     done = []
     try:
         for name, file in files.items():
-            table = topic_table(bag, name)
             folder.mkdir(parents=True, exist_ok=True)
             with atomic_file(file) as stream:
-                FORMATS[form](table, stream)
-            done.append(ExportedTable(name, file, table.num_rows))
+                try:
+                    rows = _write(bag, name, FORMATS[form], form == "csv", stream)
+                except pa.ArrowException as error:
+                    why = " ".join(str(error).split())
+                    raise BagError(
+                        f"{bag.path}: {name}: its messages make no table ({why})"
+                    ) from None
+            done.append(ExportedTable(name, file, rows))
     except OSError as error:
         raise BagError(f"{folder}: cannot be written to ({error.strerror})") from None
     return done
@@ -99,12 +94,57 @@ def topic_table(bag: BagReader, name: str) -> pa.Table:
     Raises:
         BagError: a message cannot be understood.
     """
-    batches = [pa.Table.from_pydict(columns) for columns in _batches(bag, name)]
-    return pa.concat_tables(batches, promote_options="permissive")
+    return pa.concat_tables(_tables(bag, name), promote_options="permissive")
+
+
+def _write(
+    bag: BagReader,
+    name: str,
+    make_writer: Callable[[Any, pa.Schema], Any],
+    lists_as_text: bool,
+    stream: IO[bytes],
+) -> int:
+    """Write a topic's rows by the batch; return how many there are.
+
+    The topic is read twice: what columns there are, only its last message tells.
+    """
+    schema = pa.schema([])
+    for table in _tables(bag, name, lists_as_text):
+        schema = pa.unify_schemas([schema, table.schema], promote_options="permissive")
+    rows = 0
+    with make_writer(stream, schema) as writer:
+        for table in _tables(bag, name, lists_as_text):
+            empty = schema.empty_table()
+            whole = pa.concat_tables([empty, table], promote_options="permissive")
+            writer.write_table(whole.cast(schema))
+            rows += whole.num_rows
+    return rows
+
+
+def _tables(
+    bag: BagReader, name: str, lists_as_text: bool = False
+) -> Iterator[pa.Table]:
+    for columns in _batches(bag, name):
+        try:
+            table = pa.Table.from_pydict(columns)
+        except (pa.ArrowException, ArithmeticError, TypeError, ValueError) as error:
+            at_ns = columns["log_time_ns"][0]
+            raise _unreadable(bag, name, at_ns, error) from None
+        yield _without_lists(table) if lists_as_text else table
+
+
+def _without_lists(table: pa.Table) -> pa.Table:
+    """Return a table with lists as JSON text: CSV has none."""
+    for i, column in enumerate(table.columns):
+        if pa.types.is_list(column.type):
+            texts = pa.array([json.dumps(value.as_py()) for value in column])
+            table = table.set_column(i, table.column_names[i], texts)
+    return table
 
 
 def _batches(bag: BagReader, name: str) -> Iterator[dict[str, list[Any]]]:
     rows: list[Row] = []
+    size = 0
     row_of = row_maker(bag.topics[name])
     for message in bag.messages([name]):
         try:
@@ -112,9 +152,10 @@ def _batches(bag: BagReader, name: str) -> Iterator[dict[str, list[Any]]]:
         except Exception as error:  # bytes that are not of the type fail anyhow
             raise _unreadable(bag, name, message.log_ns, error) from None
         rows.append({"log_time_ns": message.log_ns, **row})
-        if len(rows) == _ROWS_PER_BATCH:
+        size += len(message.data)
+        if len(rows) == _ROWS_PER_BATCH or size > _BYTES_PER_BATCH:
             yield _by_column(rows)
-            rows = []
+            rows, size = [], 0
     if rows:
         yield _by_column(rows)
 

@@ -20,6 +20,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
+from rclpy.type_support import check_for_type_support
 from std_srvs.srv import Trigger
 
 from biped_bag.player.player import Player
@@ -132,7 +133,8 @@ class PlayerNode(Node):  # type: ignore[misc]
     def _add(self, name: str, topic: BagTopic, published_as: str) -> None:
         try:
             kind = message_type(Topic(name, topic.type_name))
-        except (ImportError, AttributeError, ValueError):
+            check_for_type_support(kind)
+        except (ImportError, AttributeError, TypeError, ValueError):
             self._warn(
                 f"{name} is left out: no package has its type, {topic.type_name}"
             )

@@ -27,8 +27,9 @@ from biped_bag.storage.mcap_record import (
     place_of,
 )
 from biped_bag.storage.message_order import Source, in_order
-from biped_bag.storage.metadata import FILE_NAME, BagMetadata, FileInfo
+from biped_bag.storage.metadata import FILE_NAME, OWN_RECORD, BagMetadata, FileInfo
 from biped_bag.storage.summary import check_sizes
+from biped_common.plain_yaml import YamlError, read_yaml
 
 MOST_RECORD_BYTES = 16 * 2**20
 """Of all MCAP metadata records that are read at once; that of a walk has 500 bytes."""
@@ -212,3 +213,19 @@ class BagReader:
                     f"{self.path / FILE_NAME}: tells of {told.count} messages "
                     f"on {told.name}, but the data hold {held}",
                 )
+        own = [record.metadata for record in self.records(OWN_RECORD)]
+        try:
+            repeated = (
+                read_yaml(own[-1].get("serialized_metadata", "")) if own else None
+            )
+        except YamlError:
+            repeated = None  # of another recorder
+        if self._told is None or not isinstance(repeated, dict):
+            return
+        distro = repeated.get("ros_distro", self.ros_distro)
+        if distro != self.ros_distro:
+            raise broken(
+                self.path,
+                f"{self.path / FILE_NAME}: tells of ROS {self.ros_distro!r}, but the "
+                f"data of {distro!r}",
+            )

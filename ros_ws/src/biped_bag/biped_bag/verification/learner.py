@@ -33,6 +33,8 @@ def recorded_session(bag: BagReader) -> LearningSession:
         values = read_yaml(record.metadata["settings"])
         gait, learner = values["gait"], values["learner"]
         seed, begins_with = int(record.metadata["seed"]), record.metadata["begins_with"]
+        if seed < 0:
+            raise ValueError(f"seed {seed}")
     except (KeyError, TypeError, ValueError) as error:
         reason = " ".join(repr(error).split())[:200]
         raise BagError(f"{bag.path}: its record {RUN_RECORD}: {reason}") from None
