@@ -12,7 +12,7 @@ from rclpy.serialization import deserialize_message
 from biped_bag.qos import RECORDED_DEPTH
 from biped_bag.storage.contents import BagMessage
 from biped_common.timing import NS_PER_S
-from biped_ros.guarded import message_type
+from biped_ros.messages import message_type
 from msgs_json.topics import CLOCK
 
 
