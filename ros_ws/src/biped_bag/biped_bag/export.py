@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -71,9 +72,10 @@ def export(
     if there and not replace:
         raise BagError(f"{there[0]}: is there already; --force replaces it")
     done = []
+    new = not folder.exists()
     try:
+        folder.mkdir(parents=True, exist_ok=True)
         for name, file in files.items():
-            folder.mkdir(parents=True, exist_ok=True)
             with atomic_file(file) as stream:
                 try:
                     rows = _write(bag, name, FORMATS[form], form == "csv", stream)
@@ -85,6 +87,10 @@ def export(
             done.append(ExportedTable(name, file, rows))
     except OSError as error:
         raise BagError(f"{folder}: cannot be written to ({error.strerror})") from None
+    finally:
+        if new and not done:
+            with suppress(OSError):
+                folder.rmdir()
     return done
 
 
