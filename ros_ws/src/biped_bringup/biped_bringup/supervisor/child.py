@@ -1,4 +1,10 @@
-"""One node as a child process: its start, its log, its end."""
+"""One node as a child process: its start, its log, its end.
+
+What failures do:
+    the log cannot be written (disk full): `log_failure` says why, and no more is written
+        to it. What the process prints is read and shown all the same: a process whose
+        output nobody reads stops when the pipe is full.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +15,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import IO
@@ -42,6 +49,8 @@ class Child:
         self.starts = 0
         self.last_line = ""
         """What it printed last."""
+        self.log_failure: str | None = None
+        """Why the log ends before the process does."""
         self._command = [
             sys.executable, "-m", module,
             "--ros-args", "--params-file", str(parameter_file),
@@ -110,12 +119,21 @@ class Child:
         return True
 
     def _read(self, stream: IO[str]) -> None:
-        with self._log_file.open("a") as log, stream:
+        with stream:
             for line in stream:
-                log.write(line)
-                log.flush()
+                self._log(line)
                 self.last_line = line.strip() or self.last_line
-                self._show(self.name, line.rstrip())
+                with suppress(OSError):  # nobody looks any more
+                    self._show(self.name, line.rstrip())
+
+    def _log(self, line: str) -> None:
+        if self.log_failure is not None:
+            return
+        try:
+            with self._log_file.open("a") as log:
+                log.write(line)
+        except OSError as error:
+            self.log_failure = f"{self._log_file}: {error.strerror}"
 
 
 def _die_with(supervisor: int) -> None:
