@@ -38,6 +38,8 @@ from msgs_json.observation import Observation
 from msgs_json.wire import RefusedMessageError, decode, encode
 
 NAME = topics.LEARNER_NODE
+NOT_SAVED = "not saved"
+"""In /diagnostics: why the last checkpoint could not be written; empty if it was."""
 _STATUS_PERIOD_S = 1.0
 _LOOK_PERIOD_S = 0.1
 # The lease after which a killed node is off the graph (fastdds_profile.xml), and a bit.
@@ -80,6 +82,8 @@ class LearnerNode(GuardedNode):
         self._done = False
         self._save_due = False
         self._saved_episodes: int | None = None
+        self._not_saved = ""
+        """Why the last checkpoint could not be written."""
         self._gaps = ObservationGaps()
         self._seen = ("", -1)
         self._template = correction_template()
@@ -132,8 +136,10 @@ class LearnerNode(GuardedNode):
             text = f"{self._file}: cannot be written: {error.strerror}"
             self.get_logger().error(text)
             self.remark(DiagnosticStatus.ERROR, "checkpoint", text)
+            self._not_saved = text
             return text
         self._saved_episodes = self.session.episodes
+        self._not_saved = ""
         return None
 
     def figures(self) -> dict[str, str]:
@@ -142,6 +148,7 @@ class LearnerNode(GuardedNode):
         return {
             "episodes": str(self.session.episodes),
             "episodes saved": "none" if saved is None else str(saved),
+            NOT_SAVED: self._not_saved,
         }
 
     def _on_settings(self, settings: LearnerNodeSettings) -> None:

@@ -36,16 +36,16 @@ def holder(tmp_path):
 
 
 def test_the_refusal_names_the_process_that_has_the_folder(holder, tmp_path):
-    with pytest.raises(CommandError, match=rf"{tmp_path}: .* process {holder.pid};"):
-        with exclusive_folder(tmp_path):
-            pass
+    named = pytest.raises(CommandError, match=rf"{tmp_path}: .* process {holder.pid};")
+    with named, exclusive_folder(tmp_path):
+        pass
 
 
 def test_a_refusal_leaves_the_holder_its_folder(holder, tmp_path):
     for _ in range(2):
-        with pytest.raises(CommandError, match=str(holder.pid)):
-            with exclusive_folder(tmp_path):
-                pass
+        refused = pytest.raises(CommandError, match=str(holder.pid))
+        with refused, exclusive_folder(tmp_path):
+            pass
 
 
 def test_a_process_that_is_killed_leaves_no_lock(holder, tmp_path):
@@ -68,7 +68,6 @@ def test_a_child_does_not_keep_the_lock(tmp_path):
 
 def test_who_holds_it_last_is_named(tmp_path):
     (tmp_path / ".lock").write_text("99999999")
-    with exclusive_folder(tmp_path), pytest.raises(CommandError) as refused:
-        with exclusive_folder(tmp_path):
-            pass
-    assert f"process {os.getpid()};" in str(refused.value)
+    refused = pytest.raises(CommandError, match=f"process {os.getpid()};")
+    with exclusive_folder(tmp_path), refused, exclusive_folder(tmp_path):
+        pass

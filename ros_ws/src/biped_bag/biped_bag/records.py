@@ -27,6 +27,8 @@ COUNTS_RECORD = "biped.counts"
 """At the end: what was received, written and lost, by topic."""
 # In metadata.yaml; a bag without them was not ended in order.
 STATE_KEY, LOST_KEY = "biped.recording", "biped.lost"
+COMPLETE = "complete"
+"""Value of STATE_KEY where everything was written."""
 
 FROM_NOTHING = "nothing"
 """What a run begins with that does not go on from a memory."""

@@ -71,11 +71,12 @@ class GuardedNode(Node):  # type: ignore[misc]
         """Let go of what is not ROS's; nodes override it."""
 
     def await_acknowledgements(self) -> None:
-        """Wait a little until all that was published has arrived.
+        """Publish the last diagnostics; wait a little until everything has arrived.
 
         A publisher that ends takes with it what it would have to send again: of a fast
         one, the last moments.
         """
+        self._publish_diagnostics()
         end = time.monotonic() + _ACKNOWLEDGED_S
         for publisher in self.publishers:
             left_s = max(0.0, end - time.monotonic())

@@ -35,10 +35,11 @@ def counts_of(
 
 
 def counts_table(counts: dict[str, dict[str, int]], folder: Path) -> list[str]:
-    """Return one line per topic and one for all."""
+    """Return one line per topic of which something was lost, and one for all."""
     lines = [
         f"{name}: {n['received']} received, {n['written']} written, {n['lost']} lost"
         for name, n in sorted(counts.items())
+        if n["lost"]
     ]
     written = sum(n["written"] for n in counts.values())
     lost = sum(n["lost"] for n in counts.values())

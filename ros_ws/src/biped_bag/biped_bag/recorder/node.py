@@ -37,6 +37,7 @@ from biped_bag.recorder.intake import Intake
 from biped_bag.recorder.settings import RecorderSettings
 from biped_bag.recorder.writer_thread import WriterThread
 from biped_bag.records import (
+    COMPLETE,
     COUNTS_RECORD,
     EPISODE_RECORD,
     LOST_KEY,
@@ -136,7 +137,7 @@ class RecorderNode(GuardedNode):
 
             recording.do(count)
             lost = sum(topic.continuity.lost for topic in incoming)
-            state = str(recording.error or "complete")
+            state = str(recording.error or COMPLETE)
             recording.close({STATE_KEY: state, LOST_KEY: str(lost)})
             bag = recording.writer
             for line in counts_table(counts_of(incoming, bag), bag.folder):

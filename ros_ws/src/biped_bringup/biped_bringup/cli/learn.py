@@ -33,7 +33,9 @@ from biped_common.command_line import (
     print_json,
     writable_folder,
 )
+from biped_common.exclusive_folder import exclusive_folder
 from biped_common.signals import stop_requests
+from learner_node.walking.episode_log import EpisodeLog
 from msgs_json.episode_result import EpisodeResult
 
 MEMORY_FILE = "memory.npz"
@@ -98,21 +100,27 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 def run(options: argparse.Namespace) -> int:
     """Learn and report."""
     training = _training(options)
-    nothing = training.nothing_to_do(options.episodes, options.stop_at_schedule)
-    if nothing is not None:
-        training.close()
-        return _report_nothing(training, nothing, options)
-    folder = writable_folder(
-        options.out
-        or (options.resume.parent if options.resume is not None else _DEFAULT_OUT)
+    folder = options.out or (
+        options.resume.parent if options.resume is not None else _DEFAULT_OUT
     )
     memory_file = folder / MEMORY_FILE
-    if options.resume is None and memory_file.exists() and not options.fresh:
+    try:
+        nothing = training.nothing_to_do(options.episodes, options.stop_at_schedule)
+        if nothing is not None:
+            return _report_nothing(training, nothing, options)
+        if options.resume is None and memory_file.exists() and not options.fresh:
+            raise CommandError(
+                f"{memory_file}: is there already; give --resume {memory_file} to go "
+                "on with it, --fresh to replace it, or another --out"
+            )
+        with exclusive_folder(writable_folder(folder)):
+            return _learn(options, training, folder)
+    finally:
         training.close()
-        raise CommandError(
-            f"{memory_file}: is there already; give --resume {memory_file} to go on "
-            "with it, --fresh to replace it, or another --out"
-        )
+
+
+def _learn(options: argparse.Namespace, training: TrainingRun, folder: Path) -> int:
+    memory_file = folder / MEMORY_FILE
     console = Console(stderr=True)
     if training.version_changes:
         changes = ", ".join(training.version_changes)
@@ -122,30 +130,38 @@ def run(options: argparse.Namespace) -> int:
         console.print(
             f"going on under other settings, not bit for bit: {changes}", soft_wrap=True
         )
-    try:
-        with stop_requests() as stops, TrainingProgress(training, console) as progress:
-            saved = time.monotonic()
+    with stop_requests() as stops, TrainingProgress(training, console) as progress:
+        saved = time.monotonic()
 
-            def after_episode(_: EpisodeResult) -> bool:
-                nonlocal saved
-                progress.update()
-                if time.monotonic() - saved >= options.checkpoint_every:
-                    training.save(memory_file)
-                    saved = time.monotonic()
-                return not stops
+        def after_episode(_: EpisodeResult) -> bool:
+            nonlocal saved
+            progress.update()
+            if time.monotonic() - saved >= options.checkpoint_every:
+                training.save(memory_file)
+                saved = time.monotonic()
+            return not stops
 
-            training.run(options.episodes, options.stop_at_schedule, after_episode)
-            training.save(memory_file)
-            with atomic_file(folder / LOG_FILE) as log:
-                log.write(training.log.csv_text().encode())
-        summary = training.summary(memory_file)
-    finally:
-        training.close()
+        training.run(options.episodes, options.stop_at_schedule, after_episode)
+        training.save(memory_file)
+        write_log(training.log, folder)
+    summary = training.summary(memory_file)
     if options.json:
         print_json(summary)
     else:
         _print(summary, folder, interrupted=bool(stops))
     return INTERRUPTED if stops else _status(summary, options)
+
+
+def write_log(log: EpisodeLog, folder: Path) -> Path:
+    """Write the table of episodes into a folder; return the file.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    path = folder / LOG_FILE
+    with atomic_file(path) as file:
+        file.write(log.csv_text().encode())
+    return path
 
 
 def _training(options: argparse.Namespace) -> TrainingRun:

@@ -11,7 +11,7 @@ from typing import Any
 
 from biped_bag.errors import BagError
 from biped_bag.recorder.settings import RecorderSettings
-from biped_bag.records import LOST_KEY, STATE_KEY
+from biped_bag.records import COMPLETE, LOST_KEY, STATE_KEY
 from biped_bag.storage.layout import holds_bag
 from biped_bag.storage.metadata import read_metadata
 from biped_bringup.supervisor.supervisor import RECORDER, Supervisor
@@ -92,16 +92,15 @@ def recorder_parameters(
     return flattened(to_mapping(settings))
 
 
-def bag_report(folder: Path, supervisor: Supervisor) -> list[str]:
-    """Return a line for every bag of the run, and one if recording has stopped."""
+def bags_of(folder: Path, supervisor: Supervisor) -> list[Path]:
+    """Return the bags of the run: a recorder that died began another one."""
     starts = supervisor.children[RECORDER].starts
     further = [folder.with_name(f"{folder.name}_{n}") for n in range(2, starts + 1)]
-    lines = [_bag_line(bag) for bag in (folder, *further) if holds_bag(bag)]
-    reason = supervisor.done_without.get(RECORDER)
-    return lines if reason is None else [*lines, f"not all is recorded: {reason}"]
+    return [bag for bag in (folder, *further) if holds_bag(bag)]
 
 
-def _bag_line(folder: Path) -> str:
+def bag_line(folder: Path) -> str:
+    """Return how much is in a bag."""
     try:
         metadata = read_metadata(folder)
     except BagError as error:
@@ -112,6 +111,26 @@ def _bag_line(folder: Path) -> str:
         f"bag     {folder}: {metadata.message_count} messages, "
         f"{metadata.custom.get(LOST_KEY, 'unknown')} lost"
     )
+
+
+def not_recorded(folder: Path, supervisor: Supervisor) -> list[str]:
+    """Return why the recording is not complete, if it could not be."""
+    reason = supervisor.done_without.get(RECORDER)
+    if reason is not None:
+        return [f"the rest of the bag: {reason}"]
+    return [
+        f"the rest of {bag}: {state}"
+        for bag in bags_of(folder, supervisor)
+        if (state := _state(bag)) != COMPLETE
+    ]
+
+
+def _state(folder: Path) -> str:
+    """Return how the recording of a bag ended; one that was cut off does not say."""
+    try:
+        return read_metadata(folder).custom.get(STATE_KEY, COMPLETE)
+    except BagError as error:
+        return str(error)
 
 
 def _split(text: str) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +21,10 @@ from biped_bringup.cli.options import (
 from biped_bringup.cli.recording import (
     add_recording_options,
     bag_folder,
-    bag_report,
     recorder_parameters,
 )
 from biped_bringup.cli.status_screen import StatusScreen
-from biped_bringup.cli.up_report import report
+from biped_bringup.cli.up_report import EndedRun, report
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
@@ -37,17 +36,19 @@ from biped_bringup.supervisor.supervisor import (
 )
 from biped_bringup.training import TrainingRun
 from biped_common.command_line import (
-    NODE_FAILURE,
     CommandError,
+    add_json_option,
     natural,
     positive,
     writable_folder,
 )
-from biped_common.settings import to_mapping
+from biped_common.exclusive_folder import exclusive_folder
+from biped_common.settings import SettingsError, to_mapping
 from biped_common.signals import stop_requests
 from biped_description.robot import Robot
 from biped_ros.environment import (
     DISCOVERY_RANGES,
+    LAST_DOMAIN,
     node_environment,
     private_domain,
 )
@@ -57,6 +58,8 @@ from trajectory_node.waist_reference import WaistReference
 # On a busy machine a peer can be too late in real time, which is not the walk's fault.
 _ATTEMPTS = 5
 _DEFAULT_OUT = Path("bags/up")
+# Settings of nodes that are given as options.
+_OPTIONS = {"publish_every_ticks": "--publish-every", "seed": "--seed"}
 _ALL_NODES = ",".join(name.removesuffix("_node") for name in START_ORDER)
 
 
@@ -70,8 +73,8 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "recorder last. A recorder that cannot go on (disk full, folder unusable) does "
         "not stop the walk. Ends when the walk is learned, or "
         "after --episodes. Exit status 0 when learned (or walked, with --greedy), 1 "
-        "when not, 2 for wrong input, 3 when a node could not be kept running, 130 "
-        "when interrupted.",
+        "when not, or when something could not be saved, 2 for wrong input, 3 when a "
+        "node could not be kept running, 130 when interrupted.",
     )
     parser.add_argument(
         "--pace",
@@ -119,7 +122,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "--domain",
         type=natural,
         metavar="ID",
-        help="ROS_DOMAIN_ID (default: one of this run's own)",
+        help="default: ROS_DOMAIN_ID if it is set, or else one of this run's own",
     )
     parser.add_argument(
         "--discovery",
@@ -139,30 +142,36 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     )
     add_recording_options(parser)
     add_settings_options(parser)
+    add_json_option(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Supervise and report."""
     names = _nodes(options.nodes)
-    folder = writable_folder(options.out).resolve()
-    memory_file = folder / MEMORY_FILE
+    out = options.out.resolve()
+    memory_file = out / MEMORY_FILE
     learned = _learned(options, memory_file)
     settings, seed = _settings_and_seed(options, learned)
     # Refuses here a gait that the robot cannot walk.
     WaistReference(Robot(settings.robot), settings.gait, settings.correction)
     bag = bag_folder(options, names)
+    domain = _domain(options.domain)
     max_episodes = 1 if options.greedy else options.episodes or 0
-    parameters = node_parameters(
-        settings,
-        seed,
-        checkpoint_file=str(memory_file),
-        max_episodes=max_episodes,
-        publish_every_ticks=max(1, options.publish_every),
-        pace=options.pace,
-        frozen=options.greedy,
-        recorders=0 if bag is None else 1,
-    ).flat()
+    try:
+        parameters = node_parameters(
+            settings,
+            seed,
+            checkpoint_file=str(memory_file),
+            max_episodes=max_episodes,
+            publish_every_ticks=options.publish_every,
+            pace=options.pace,
+            frozen=options.greedy,
+            recorders=0 if bag is None else 1,
+        ).flat()
+    except SettingsError as error:
+        option = _OPTIONS.get(error.key, error.key)
+        raise CommandError(f"{option} {error.value}: {error.allowed}") from None
     if bag is None:
         names = [name for name in names if name != RECORDER]
     else:
@@ -179,26 +188,58 @@ def run(options: argparse.Namespace) -> int:
         parameters[RECORDER] = recorder_parameters(
             bag, run_data, begun_with, options.record_split
         )
-    # A learner that finds its memory goes on from it.
-    if options.fresh:
-        memory_file.unlink(missing_ok=True)
-    elif learned is not None and learned.setting_changes and not options.greedy:
-        learned.save(memory_file)
-    domain = private_domain() if options.domain is None else options.domain
+    with exclusive_folder(writable_folder(out)):
+        # A learner that finds its memory goes on from it.
+        changes = "" if learned is None else learned.setting_changes
+        if options.fresh:
+            memory_file.unlink(missing_ok=True)
+        elif learned is not None and changes and not options.greedy:
+            learned.save(memory_file)
+        supervisor, interrupted, failure = _supervise(
+            options, {name: parameters[name] for name in names}, domain, out, changes
+        )
+        return report(
+            EndedRun(
+                supervisor,
+                options,
+                memory_file,
+                bag,
+                to_mapping(settings),
+                interrupted,
+                failure,
+            )
+        )
+
+
+def _supervise(
+    options: argparse.Namespace,
+    parameters: Mapping[str, Mapping[str, Any]],
+    domain: int,
+    folder: Path,
+    changes: str,
+) -> tuple[Supervisor, bool, str | None]:
+    """Run the nodes to their end.
+
+    Args:
+        options: of the command.
+        parameters: of the nodes to start, by node.
+        domain: of the run.
+        folder: for parameter files and logs.
+        changes: settings that are not those of the memory, in words.
+
+    Returns:
+        The supervisor, whether a signal ended it, and why a node could not be kept
+        running.
+    """
     environment = node_environment(domain, options.discovery)
     os.environ.update(environment)  # the supervisor's own node, too
-    screen = StatusScreen(Console(stderr=True), live=not options.no_view)
+    screen = StatusScreen(Console(stderr=True), not options.no_view, domain)
+    failure = None
     with stop_requests() as stops, screen:
-        screen.line(NAME, f"ROS_DOMAIN_ID={domain}, {options.discovery}")
-        if learned is not None and learned.setting_changes:
-            screen.line(NAME, f"other settings: {learned.setting_changes}")
-        supervisor = Supervisor(
-            {name: parameters[name] for name in names},
-            environment,
-            folder,
-            screen.line,
-        )
-        failure = None
+        screen.line(NAME, f"for other terminals: export ROS_DOMAIN_ID={domain}")
+        if changes:
+            screen.line(NAME, f"other settings: {changes}")
+        supervisor = Supervisor(parameters, environment, folder, screen.line)
         graph = supervisor.graph
 
         def done() -> bool:
@@ -213,15 +254,27 @@ def run(options: argparse.Namespace) -> int:
         try:
             supervisor.run(done, lambda: bool(stops))
         except NodeFailureError as error:
-            failure = error
+            failure = str(error)
         finally:
             supervisor.stop()
-    if bag is not None:
-        print("\n".join(bag_report(bag, supervisor)))
-    if failure is not None:
-        print(f"failed: {failure}; logs are in {folder}")
-        return NODE_FAILURE
-    return report(supervisor, options, memory_file, bag, interrupted=bool(stops))
+        screen.update(supervisor)
+    return supervisor, bool(stops), failure
+
+
+def _domain(given: int | None) -> int:
+    """Return the domain of the run: as given, of the environment, or one of its own.
+
+    Raises:
+        CommandError: it is none that ROS 2 has.
+    """
+    name, text = "--domain", None if given is None else str(given)
+    if text is None:
+        name, text = "ROS_DOMAIN_ID", os.environ.get("ROS_DOMAIN_ID")
+    if not text:
+        return private_domain()
+    if not (text.isdecimal() and int(text) <= LAST_DOMAIN):
+        raise CommandError(f"{name} {text}: must be from 0 to {LAST_DOMAIN}")
+    return int(text)
 
 
 def _walked(graph: GraphWatch) -> bool:

@@ -1,9 +1,9 @@
 """One node as a child process: its start, its log, its end.
 
 What failures do:
-    the log cannot be written (disk full): `log_failure` says why, and no more is written
-        to it. What the process prints is read and shown all the same: a process whose
-        output nobody reads stops when the pipe is full.
+    the log cannot be written (disk full): `log_failure` says why, and it ends there.
+        What the process prints is read and shown all the same: a process whose output
+        nobody reads stops when the pipe is full.
 """
 
 from __future__ import annotations
@@ -119,6 +119,7 @@ class Child:
         return True
 
     def _read(self, stream: IO[str]) -> None:
+        self._log("")  # one that cannot be written is known at once
         with stream:
             for line in stream:
                 self._log(line)

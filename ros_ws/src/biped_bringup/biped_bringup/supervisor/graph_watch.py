@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections import deque
+from collections import Counter, defaultdict, deque
 from collections.abc import Callable
 
 import rclpy
@@ -11,10 +11,12 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.experimental import EventsExecutor
 from rclpy.task import Future
 
+from biped_common.terminal_text import printable
 from biped_ros.cdr import string_text
 from biped_ros.qos import qos_profile
 from biped_ros.sole_publisher import Publishers, SolePublisherListener
 from msgs_json import topics
+from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
@@ -61,6 +63,8 @@ class GraphWatch:
         self.result: EpisodeResult | None = None
         """Of the last walk that ended."""
         self.results = 0
+        self.end_causes: Counter[EndCause] = Counter()
+        """How many walks ended by each cause."""
         self._claimed: EpisodeResult | None = None
         self._claimed_at = 0.0
         self._observations: deque[bytes] = deque(maxlen=_REMEMBERED_OBSERVATIONS)
@@ -70,6 +74,8 @@ class GraphWatch:
         """When each node's diagnostics last came, by name."""
         self.remarks: dict[str, str] = {}
         """What each node last said of itself."""
+        self.figures: defaultdict[str, dict[str, dict[str, str]]] = defaultdict(dict)
+        """What each node last measured, by name and process started here."""
         self.strangers: dict[str, str] = {}
         """Who has ever published beside a control topic's owner, last, by topic."""
         for topic, handle in (
@@ -139,7 +145,7 @@ class GraphWatch:
                 handle(message)
             except MalformedMessageError as error:
                 self._node.get_logger().warning(
-                    f"{topic.name}: {error}", throttle_duration_sec=1.0
+                    printable(f"{topic.name}: {error}"), throttle_duration_sec=1.0
                 )
 
         return guarded
@@ -174,6 +180,7 @@ class GraphWatch:
             self._claimed = None
             self.result = claimed
             self.results += 1
+            self.end_causes[claimed.end_cause] += 1
 
     def _on_stranger(self, topic: Topic, text: str | None) -> None:
         assert topic.owner is not None
@@ -187,3 +194,7 @@ class GraphWatch:
             if status.name in _NODES and status.hardware_id == process:
                 self.heard_at[status.name] = time.monotonic()
                 self.remarks[status.name] = status.message
+                own = self._expected.get(status.name, "")
+                self.figures[status.name][own] = {
+                    figure.key: figure.value for figure in status.values
+                }

@@ -45,6 +45,7 @@ _MODULES = {
 }
 START_ORDER = tuple(_MODULES)
 _TURN_S = 0.1
+_ENDING_TURN_S = 0.02
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ class Supervisor:
                     child.signal(number)
                     # One that was stopped cannot end before it is let go on.
                     child.signal(signal.SIGCONT)
-                    child.wait(self._patience.end_s)
+                    self._await_end(child)
         self.graph.close()
 
     def _await_turn(self, child: Child, stopped: Callable[[], bool]) -> None:
@@ -159,6 +160,15 @@ class Supervisor:
                     f"{child.name} cannot be started: {other}; end that, or take "
                     "another domain"
                 )
+
+    def _await_end(self, child: Child) -> None:
+        """Wait for a node to end, and hear its last words."""
+        end = time.monotonic() + self._patience.end_s
+        while child.running and time.monotonic() < end:
+            self.graph.spin(_ENDING_TURN_S)
+        if not child.running:
+            child.wait(self._patience.end_s)  # until all that it said has been read
+            self.graph.spin(_ENDING_TURN_S)
 
     def _start(self, child: Child, stopped: Callable[[], bool]) -> None:
         self.graph.expect(child.name, process_name(child.start()))
