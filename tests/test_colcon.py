@@ -221,8 +221,21 @@ def test_an_executable_is_where_ros2_run_looks_for_it(
 
 
 def test_the_command_line_finds_its_presets(workspace: Workspace) -> None:
-    command = workspace.executable("biped_bringup/biped")
-    assert workspace.output(command, "check", "--preset", "quick").startswith("valid")
+    assert workspace.output("biped", "check", "--preset", "quick").startswith("valid")
+
+
+def test_both_commands_are_on_the_path(workspace: Workspace) -> None:
+    found = workspace.output("bash", "-c", "command -v biped ros2").splitlines()
+    assert found == [
+        str(workspace.executable("biped_bringup/biped")),
+        str(Path(sys.executable).with_name("ros2")),
+    ]
+
+
+def test_sourcing_it_twice_adds_nothing_to_the_path(workspace: Workspace) -> None:
+    setup = workspace.install / "setup.bash"
+    again = f'before=$PATH; source "{setup}"; [ "$PATH" = "$before" ]'
+    assert workspace.output("bash", "-c", again) == ""
 
 
 def test_the_executables_walk_together(walk: Walk) -> None:

@@ -4,14 +4,22 @@ import time
 
 import pytest
 import rclpy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from msgspec.structs import replace
 from std_msgs.msg import String
 from tests.payloads import OBSERVATION, RESULT, STATUS
 
+from biped_bringup.cli.run_figures import (
+    counted,
+    given_up_walks,
+    missed_deadlines,
+    not_saved_because,
+    simulated_per_real_time,
+)
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from biped_ros.qos import qos_profile
 from msgs_json import topics
+from msgs_json.end_cause import EndCause
 from msgs_json.wire import encode
 
 OWN, OTHER = "host:12", "host:13"
@@ -39,8 +47,8 @@ class Speaker:
         status = replace(STATUS, instance=f"learner-1-{process}", **changes)
         self._status.publish(String(data=encode(status)))
 
-    def episode(self, number):
-        result = replace(RESULT, episode=number)
+    def episode(self, number, **changes):
+        result = replace(RESULT, episode=number, **changes)
         self._episode.publish(String(data=encode(result)))
 
     def observation(self, number, **changes):
@@ -53,8 +61,9 @@ class Speaker:
         )
         self._observed.publish(String(data=encode(replace(last, **changes))))
 
-    def diagnostics(self, process):
-        status = DiagnosticStatus(name=topics.LEARNER_NODE, hardware_id=process)
+    def diagnostics(self, process, node=topics.LEARNER_NODE, **figures):
+        values = [KeyValue(key=k, value=v) for k, v in figures.items()]
+        status = DiagnosticStatus(name=node, hardware_id=process, values=values)
         self._diagnostics.publish(DiagnosticArray(status=[status]))
 
 
@@ -198,3 +207,27 @@ def test_what_a_node_is_to_publish_may_be_taken(watch, speaker):
     assert "published already by learner_node (this host)" in watch.taken(
         topics.LEARNER_NODE
     )
+
+
+def test_walks_that_were_given_up_are_counted_by_cause(watch, speaker):
+    causes = [EndCause.LATE, EndCause.ZMP_ERROR, EndCause.COMPLETED, EndCause.LATE]
+    for number, cause in enumerate([*causes, EndCause.DISTURBED]):
+        speaker.observation(number)
+        speaker.episode(number, end_cause=cause)
+        assert hears(watch, lambda number=number: watch.results == number + 1)
+    assert counted(given_up_walks(watch)) == "late 2, disturbed 1"
+
+
+def test_deadlines_are_counted_over_all_processes_of_the_robot(watch, speaker):
+    for process, missed in ((OTHER, "2"), (OTHER, "3"), (OWN, "4")):
+        watch.expect(topics.SIM_NODE, process)
+        figures = {"missed 20 ms deadlines": missed}
+        speaker.diagnostics(process, topics.SIM_NODE, **figures)
+        assert hears(watch, lambda: topics.SIM_NODE in watch.heard_at)
+    assert missed_deadlines(watch) == 3 + 4
+
+
+def test_before_nodes_are_heard_nothing_is_measured(watch):
+    assert missed_deadlines(watch) == 0
+    assert simulated_per_real_time(watch) == "-"
+    assert not_saved_because(watch) == ""

@@ -1,6 +1,8 @@
 """`biped up` as people use it: exit statuses, logs, parts of a graph, leftovers."""
 
+import json
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -9,25 +11,28 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from tests.graph.domains import MODULE, own_domain
 from tests.graph.players import SAMPLE
 
 from biped_bag.storage.reader import BagReader
+from biped_common.settings import to_mapping
 from learner_node.checkpoint import read_checkpoint
 
 TIMEOUT_S = 120.0
 NODES = ("trajectory_node", "learner_node", "sim_node")
 
 
-def command(domain, out, *options):
-    """Return the words of a `biped up` that records nothing."""
-    fixed = ("--record", "none", "--domain", str(domain), "--out", str(out))
-    return [sys.executable, "-m", "biped_bringup.cli.main", "up", *fixed, *options]
+def command(domain, out, *options, record="none"):
+    """Return the words of a `biped up`."""
+    fixed = ("--record", record, "--domain", str(domain), "--out", str(out))
+    words = [sys.executable, "-m", "biped_bringup.cli.main", "up", *fixed, *options]
+    return [str(word) for word in words]
 
 
-def up(domain, out, *options):
+def up(domain, out, *options, **recording):
     """Run it to its end."""
     return subprocess.run(
-        command(domain, out, *options),
+        command(domain, out, *options, **recording),
         capture_output=True,
         text=True,
         timeout=TIMEOUT_S,
@@ -62,6 +67,18 @@ def node_processes(folder):
     return found
 
 
+@pytest.fixture
+def small_disk(tmp_path):
+    """A disk with room for parameter files, but neither for a memory nor for a bag."""
+    folder = tmp_path / "small"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=80k", "tmpfs", str(folder)]
+    if subprocess.run(mount, capture_output=True).returncode != 0:
+        pytest.skip("nothing can be mounted here")
+    yield folder
+    subprocess.run(["umount", str(folder)], check=True)
+
+
 def wait_for(condition):
     """Return whether the condition came true in time."""
     end = time.monotonic() + TIMEOUT_S
@@ -76,6 +93,14 @@ def learned(tmp_path):
     (memory,) = BagReader(SAMPLE).attachments()
     (tmp_path / "memory.npz").write_bytes(memory.data)
     return tmp_path
+
+
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory):
+    """What a run of one episode said, and its folder."""
+    out = tmp_path_factory.mktemp("ended")
+    options = ("--preset", "quick", "--episodes", "1", "--json")
+    return up(own_domain(MODULE), out, *options), out
 
 
 def test_a_greedy_walk_that_is_walked_ends_with_0(domain, learned):
@@ -98,13 +123,66 @@ def test_a_walk_not_learned_yet_ends_with_1_and_goes_on_when_resumed(domain, tmp
     assert f"biped up --resume --out {tmp_path}" in second.stdout
 
 
-def test_lines_say_whose_they_are_and_files_keep_them(domain, tmp_path):
-    ended = up(domain, tmp_path, "--preset", "quick", "--episodes", "1")
-    lines = ended.stderr.splitlines()
+def test_lines_say_whose_they_are_and_files_keep_them(ended):
+    said, out = ended
+    lines = said.stderr.splitlines()
     assert all(re.match(r"\[\w+\] ", line) for line in lines), lines
     ready = [line for line in lines if "is ready" in line]
     assert [line.split()[1] for line in ready] == list(NODES)
-    assert {file.stem for file in tmp_path.glob("*.log")} == set(NODES)
+    assert {file.stem for file in out.glob("*.log")} == set(NODES)
+
+
+def test_a_run_says_what_other_terminals_need_to_meet_it(ended):
+    first = ended[0].stderr.splitlines()[0]
+    assert first.endswith(f"export ROS_DOMAIN_ID={own_domain(MODULE)}")
+
+
+def test_the_table_of_episodes_is_that_of_the_memory(ended, training):
+    log = training(ended[1] / "memory.npz").log
+    assert len(log) == 1
+    assert (ended[1] / "episodes.csv").read_text() == log.csv_text()
+
+
+def test_json_tells_what_came_out_and_of_which_settings(ended, training):
+    said, out = ended
+    run, told = training(out / "memory.npz"), json.loads(said.stdout)
+    assert (told["outcome"], told["episodes"]) == ("not learned", 1)
+    assert told["episodes_not_saved"] == told["missed_deadlines"] == 0
+    assert told["memory_sha256"] == run.session.memory_sha256()
+    assert told["settings"] == to_mapping(run.settings)
+    assert told["not_saved"] == told["bags"] == []
+
+
+def test_episodes_that_the_disk_has_no_room_for_are_told_last(domain, tmp_path):
+    options = ("--preset", "quick", "--episodes", "25", "--publish-every", "1000")
+    with subprocess.Popen(
+        command(domain, tmp_path, *options), stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL, text=True,
+    ) as process:  # fmt: skip
+        memory = tmp_path / "memory.npz"
+        assert wait_for(memory.exists)
+        learner = node_processes(tmp_path)["learner_node"]
+        little = (10_000, 10_000)
+        resource.prlimit(learner, resource.RLIMIT_FSIZE, little)
+        lines = process.communicate(timeout=TIMEOUT_S)[0].splitlines()
+    saved = len(read_checkpoint(memory)[1]["log/reward"])
+    assert process.returncode == 1
+    assert lines[0].startswith(f"not learned yet: {saved} episodes")
+    assert lines[-1] == (
+        f"not saved: {25 - saved} of 25 episodes: {memory}: cannot be written: "
+        "File too large"
+    )
+
+
+def test_on_a_full_disk_the_run_ends_in_order(domain, small_disk):
+    options = ("--preset", "quick", "--episodes", "2")
+    said = up(domain, small_disk, *options, record=small_disk / "bag")
+    assert said.returncode == 1, said.stderr
+    assert "memory.npz: 0 of 2 episodes" in said.stdout
+    what = [line.partition(":")[2] for line in said.stdout.splitlines()[-2:]]
+    assert what[0].startswith(" 2 of 2 episodes: ")
+    assert what[0].endswith("memory.npz: cannot be written: No space left on device")
+    assert what[1].startswith(" the rest of ")
 
 
 def test_parts_of_a_graph_find_each_other_and_a_second_learner_fails(domain, tmp_path):

@@ -1,11 +1,14 @@
 """A node as a child process."""
 
+import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from biped_bringup.supervisor.child import Child
 
 # Starts a module that prints one line and ends, and prints what came of it.
 START = """
@@ -40,6 +43,21 @@ def started(folder: Path, *words: str) -> list[str]:
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.split(maxsplit=2)
+
+
+def test_on_a_full_disk_all_that_a_child_prints_is_shown(tmp_path, monkeypatch) -> None:
+    lines = 5000  # more than fits into the pipe of a reader that has stopped
+    (tmp_path / "talker.py").write_text(f"for n in range({lines}): print('line', n)")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    shown: list[str] = []
+    child = Child(
+        "node", "talker", tmp_path / "p.yaml", os.environ, Path("/dev/full"),
+        lambda _, line: shown.append(line),
+    )  # fmt: skip
+    child.start()
+    assert child.wait(30.0)
+    assert (len(shown), child.exit_status) == (lines, 0)
+    assert child.log_failure == "/dev/full: No space left on device"
 
 
 def test_a_child_runs_and_its_last_line_is_kept(tmp_path: Path) -> None:

@@ -82,9 +82,9 @@ def export(
         raise BagError(f"{there[0]}: is there already; --force replaces it")
     done = []
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         for name, file in files.items():
             table = topic_table(bag, name)
+            folder.mkdir(parents=True, exist_ok=True)
             with atomic_file(file) as stream:
                 FORMATS[form](table, stream)
             done.append(ExportedTable(name, file, table.num_rows))

@@ -114,8 +114,11 @@ def bag_line(folder: Path) -> str:
 
 
 def not_recorded(folder: Path, supervisor: Supervisor) -> list[str]:
-    """Return why the recording is not complete, if it could not be."""
+    """Return why the recording is not complete, if it is not."""
+    recorder = supervisor.children[RECORDER]
     reason = supervisor.done_without.get(RECORDER)
+    if reason is None and recorder.exit_status:
+        reason = recorder.last_line
     if reason is not None:
         return [f"the rest of the bag: {reason}"]
     return [
@@ -126,9 +129,9 @@ def not_recorded(folder: Path, supervisor: Supervisor) -> list[str]:
 
 
 def _state(folder: Path) -> str:
-    """Return how the recording of a bag ended; one that was cut off does not say."""
+    """Return how the recording of a bag ended."""
     try:
-        return read_metadata(folder).custom.get(STATE_KEY, COMPLETE)
+        return read_metadata(folder).custom.get(STATE_KEY, "cut off")
     except BagError as error:
         return str(error)
 

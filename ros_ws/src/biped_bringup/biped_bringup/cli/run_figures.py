@@ -9,15 +9,15 @@ from learner_node.node import NOT_SAVED
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 
-# Causes that neither learner nor robot is to blame for.
-_GIVEN_UP = (EndCause.LATE, EndCause.PEER_SILENT, EndCause.RESET, EndCause.DISTURBED)
+GIVEN_UP = (EndCause.LATE, EndCause.PEER_SILENT, EndCause.RESET, EndCause.DISTURBED)
+"""What ends walks from outside; they say nothing of who chose them."""
 
 
 def given_up_walks(graph: GraphWatch) -> dict[str, int]:
     """Return how many walks of this run were cut off from outside, by cause."""
     return {
         cause.value: graph.end_causes[cause]
-        for cause in _GIVEN_UP
+        for cause in GIVEN_UP
         if graph.end_causes[cause]
     }
 

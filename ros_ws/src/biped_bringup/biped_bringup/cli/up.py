@@ -23,6 +23,7 @@ from biped_bringup.cli.recording import (
     bag_folder,
     recorder_parameters,
 )
+from biped_bringup.cli.run_figures import GIVEN_UP
 from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.cli.up_report import EndedRun, report
 from biped_bringup.node_parameters import node_parameters
@@ -52,7 +53,6 @@ from biped_ros.environment import (
     node_environment,
     private_domain,
 )
-from msgs_json.end_cause import EndCause
 from trajectory_node.waist_reference import WaistReference
 
 # On a busy machine a peer can be too late in real time, which is not the walk's fault.
@@ -278,13 +278,12 @@ def _domain(given: int | None) -> int:
 
 
 def _walked(graph: GraphWatch) -> bool:
-    """Return whether the walk is over; one cut short by the machine is repeated."""
+    """Return whether the walk is over; one that ended from outside is repeated."""
     result = graph.result
     if graph.unseen is not None:
         return True
     return result is not None and (
-        result.end_cause not in (EndCause.LATE, EndCause.PEER_SILENT)
-        or graph.results >= _ATTEMPTS
+        result.end_cause not in GIVEN_UP or graph.results >= _ATTEMPTS
     )
 
 

@@ -218,12 +218,12 @@ def _greedy_lines(summary: Mapping[str, Any]) -> Iterator[str]:
 
 def _learning_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     episodes, lacking = summary["episodes"], summary["episodes_not_saved"]
+    line = f"{'learned' if summary['completed'] else 'not learned yet'}: "
+    line += f"{episodes} episodes"
     if "figures" in summary:
-        yield (
-            f"{'learned' if summary['completed'] else 'not learned yet'}: "
-            f"{episodes} episodes, {summary['simulated_s']:.1f} simulated s, "
-            f"{figures_text(summary['figures'])}"
-        )
+        line += f", {summary['simulated_s']:.1f} simulated s, "
+        line += figures_text(summary["figures"])
+    yield line
     if "memory_file" in summary:
         walked = f": {episodes} of {episodes + lacking} episodes" if lacking else ""
         yield f"memory  {summary['memory_file']}{walked}"
@@ -238,7 +238,7 @@ def _next_steps(run: EndedRun, achieved: bool) -> dict[str, str]:
         steps[f"biped up --greedy --pace realtime --out {_out(run)}"] = (
             "walk it once at 500 Hz"
         )
-    elif not run.options.greedy:
+    elif run.memory_file.exists() and not run.options.greedy:
         steps[f"biped up --resume --out {_out(run)}"] = "go on learning"
     if run.bag is not None:
         bag = shlex.quote(str(run.bag))
