@@ -90,7 +90,7 @@ def test_a_block_that_raises_makes_no_file(tmp_path):
 
 def test_a_disk_that_takes_no_more_changes_nothing(file):
     with (
-        pytest.raises(OSError),
+        pytest.raises(OSError, match=str(file)),
         no_file_larger_than(1000),
         atomic_file(file) as stream,
     ):

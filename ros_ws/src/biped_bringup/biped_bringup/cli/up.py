@@ -242,8 +242,11 @@ def _supervise(
         supervisor = Supervisor(parameters, environment, folder, screen.line)
         graph = supervisor.graph
 
-        def done() -> bool:
+        def stopped() -> bool:
             screen.update(supervisor)
+            return bool(stops)
+
+        def done() -> bool:
             if options.greedy:
                 return _walked(graph)
             status = graph.status
@@ -252,7 +255,7 @@ def _supervise(
             )
 
         try:
-            supervisor.run(done, lambda: bool(stops))
+            supervisor.run(done, stopped)
         except NodeFailureError as error:
             failure = str(error)
         finally:
