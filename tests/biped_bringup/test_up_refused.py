@@ -51,7 +51,7 @@ def test_a_folder_in_which_a_run_is_is_refused(biped, tmp_path, verb):
         outcome = biped(verb, "--out", tmp_path)
     assert (outcome.status, outcome.out) == (2, "")
     assert f"another run is in this folder, process {os.getpid()};" in outcome.err
-    assert os.listdir(tmp_path) == [".lock"]
+    assert os.listdir(tmp_path) == []
 
 
 def test_a_run_that_is_refused_leaves_the_memory_of_the_other(biped, tmp_path):

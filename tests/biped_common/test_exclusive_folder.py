@@ -1,5 +1,6 @@
 """A folder is one run's at a time."""
 
+import fcntl
 import os
 import signal
 import subprocess
@@ -69,5 +70,26 @@ def test_a_child_does_not_keep_the_lock(tmp_path):
 def test_who_holds_it_last_is_named(tmp_path):
     (tmp_path / ".lock").write_text("99999999")
     refused = pytest.raises(CommandError, match=f"process {os.getpid()};")
+    with exclusive_folder(tmp_path), refused, exclusive_folder(tmp_path):
+        pass
+
+
+def test_a_run_that_has_ended_leaves_nothing_behind(tmp_path):
+    with exclusive_folder(tmp_path):
+        assert os.listdir(tmp_path) == [".lock"]
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_lock_whose_file_its_holder_has_just_removed_is_none(tmp_path, monkeypatch):
+    flock, path = fcntl.flock, tmp_path / ".lock"
+
+    def late_flock(*arguments: int) -> None:
+        """Lock, the first time after the holder of the file has ended."""
+        monkeypatch.setattr(fcntl, "flock", flock)
+        path.unlink()
+        flock(*arguments)
+
+    monkeypatch.setattr(fcntl, "flock", late_flock)
+    refused = pytest.raises(CommandError, match=str(os.getpid()))
     with exclusive_folder(tmp_path), refused, exclusive_folder(tmp_path):
         pass

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from biped_common.command_line import CommandError
 
@@ -18,8 +19,7 @@ def exclusive_folder(folder: Path) -> Iterator[None]:
     """Keep other runs out of a folder.
 
     The kernel holds the lock, on LOCK_FILE; the file holds the id of its process. A
-    process that is killed leaves the file behind, but not the lock. The file is never
-    removed: who has opened it already could lock a file that nobody else finds.
+    process that is killed leaves the file behind, but not the lock.
 
     Args:
         folder: that is there, and can be written to.
@@ -27,16 +27,31 @@ def exclusive_folder(folder: Path) -> Iterator[None]:
     Raises:
         CommandError: another process has it; the text says which.
     """
-    with (folder / LOCK_FILE).open("a+") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            file.seek(0)
-            raise CommandError(
-                f"{folder}: another run is in this folder, process {file.read()}; "
-                "take another --out, or wait for its end"
-            ) from None
+    path = folder / LOCK_FILE
+    with _locked(path) as file:
         file.truncate(0)
         file.write(str(os.getpid()))
         file.flush()
-        yield
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
+
+
+def _locked(path: Path) -> IO[str]:
+    """Return the file, locked, and still the one of this name."""
+    while True:
+        file = path.open("a+")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            with file:
+                file.seek(0)
+                raise CommandError(
+                    f"{path.parent}: another run is in this folder, process "
+                    f"{file.read()}; take another --out, or wait for its end"
+                ) from None
+        # Its holder may have removed it between the two lines above.
+        if os.fstat(file.fileno()).st_nlink:
+            return file
+        file.close()
