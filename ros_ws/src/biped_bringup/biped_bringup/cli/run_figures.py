@@ -7,18 +7,14 @@ from collections.abc import Mapping
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from learner_node.node import NOT_SAVED
 from msgs_json import topics
-from msgs_json.end_cause import EndCause
-
-GIVEN_UP = (EndCause.LATE, EndCause.PEER_SILENT, EndCause.RESET, EndCause.DISTURBED)
-"""What ends walks from outside; they say nothing of who chose them."""
 
 
 def given_up_walks(graph: GraphWatch) -> dict[str, int]:
-    """Return how many walks of this run were cut off from outside, by cause."""
+    """Return how many walks of this run ended from outside, by cause."""
     return {
-        cause.value: graph.end_causes[cause]
-        for cause in GIVEN_UP
-        if graph.end_causes[cause]
+        cause.value: walks
+        for cause, walks in graph.end_causes.items()
+        if cause.from_outside
     }
 
 

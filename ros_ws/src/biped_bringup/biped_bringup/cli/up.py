@@ -23,7 +23,6 @@ from biped_bringup.cli.recording import (
     bag_folder,
     recorder_parameters,
 )
-from biped_bringup.cli.run_figures import GIVEN_UP
 from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.cli.up_report import EndedRun, report
 from biped_bringup.node_parameters import node_parameters
@@ -286,7 +285,7 @@ def _walked(graph: GraphWatch) -> bool:
     if graph.unseen is not None:
         return True
     return result is not None and (
-        result.end_cause not in GIVEN_UP or graph.results >= _ATTEMPTS
+        not result.end_cause.from_outside or graph.results >= _ATTEMPTS
     )
 
 
