@@ -33,6 +33,7 @@ from learner_node.checkpoint import read_checkpoint, taking_over, write_checkpoi
 from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
+from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from msgs_json.wire import RefusedMessageError, decode, encode
@@ -122,8 +123,9 @@ class LearnerNode(GuardedNode):
             self.failure = f"another learner is on this graph already: {other}"
 
     def close(self) -> None:
-        """Save what was learned, unless a walk goes on or the node never took part."""
-        if self._corrections is not None and not self.session.walking:
+        """Save what was learned, without the walk under way, once it has taken part."""
+        if self._corrections is not None:
+            self.session.cut_off(EndCause.RESET)
             self.save()
 
     def save(self) -> str | None:

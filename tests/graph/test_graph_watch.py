@@ -211,10 +211,10 @@ def test_what_a_node_is_to_publish_may_be_taken(watch, speaker):
 
 def test_walks_that_were_given_up_are_counted_by_cause(watch, speaker):
     causes = [EndCause.LATE, EndCause.ZMP_ERROR, EndCause.COMPLETED, EndCause.LATE]
-    for number, cause in enumerate([*causes, EndCause.DISTURBED], 1):
+    for number, cause in enumerate([*causes, EndCause.DISTURBED]):
         speaker.observation(number)
         speaker.episode(number, end_cause=cause)
-        assert hears(watch, lambda number=number: watch.results == number)
+        assert hears(watch, lambda number=number: watch.results == number + 1)
     assert counted(given_up_walks(watch)) == "late 2, disturbed 1"
 
 

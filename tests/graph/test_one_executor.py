@@ -1,9 +1,9 @@
-"""The graph in one executor leaves nothing behind."""
+"""The graph in one executor leaves nothing behind, and nothing unsaved."""
 
 import time
 
 import rclpy
-from tests.graph.clients import TIMEOUT_S, quick
+from tests.graph.clients import TIMEOUT_S, hashes, learned_in_process, quick
 
 from biped_bringup.one_executor import OneExecutor
 
@@ -22,3 +22,15 @@ def test_who_has_left_is_not_on_the_graph_any_more(domain):
     rclpy.shutdown(context=context)
     assert found & names == set()
     assert "newcomer" in found
+
+
+def test_who_leaves_within_a_walk_has_saved_all_before_it(domain, tmp_path, training):
+    memory = tmp_path / "memory.npz"
+    with OneExecutor(quick(checkpoint_file=str(memory)), domain) as graph:
+        session = graph.learner.session
+        assert graph.spin_until(
+            lambda: session.episodes == 3 and session.walking, TIMEOUT_S
+        )
+    saved = training(memory).session
+    assert saved.episodes == 3
+    assert hashes(saved) == learned_in_process(3)

@@ -136,7 +136,7 @@ class LearningSession:
         """
         walk = (observation.simulation, observation.episode)
         if observation.control_tick == 0 and observation.end_cause is None:
-            self._cut_off()
+            self.cut_off(EndCause.PEER_SILENT)
             self._walk = (
                 self.greedy() if self.frozen or self._trial_due else self._learning
             )
@@ -168,7 +168,7 @@ class LearningSession:
 
     def _unseen(self, observation: Observation) -> EpisodeResult:
         """Return the result of a walk that was joined in its middle, if at all."""
-        self._cut_off()
+        self.cut_off(EndCause.PEER_SILENT)
         walk = (observation.simulation, observation.episode)
         if walk != self._begun:  # more of it may come before the robot hears of this
             self._begun = walk
@@ -187,12 +187,12 @@ class LearningSession:
         )
         return msgspec.structs.replace(result, cost=None)
 
-    def _cut_off(self) -> None:
-        """Give up the walk under way, if there is one: its end was not heard."""
+    def cut_off(self, cause: EndCause) -> None:
+        """Give up the walk under way, if there is one: its end is not heard."""
         if self.walking:
             self.walking = False
             self._learning.give_up()
-            self.tally.give_up(EndCause.PEER_SILENT)
+            self.tally.give_up(cause)
 
     def greedy(self) -> FrozenWalk:
         """Return a frozen greedy walk of the present memory."""

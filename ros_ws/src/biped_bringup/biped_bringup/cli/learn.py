@@ -100,15 +100,14 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 def run(options: argparse.Namespace) -> int:
     """Learn and report."""
     training = _training(options)
-    nothing = training.nothing_to_do(options.episodes, options.stop_at_schedule)
-    if nothing is not None:
-        training.close()
-        return _report_nothing(training, nothing, options)
     folder = options.out or (
         options.resume.parent if options.resume is not None else _DEFAULT_OUT
     )
     memory_file = folder / MEMORY_FILE
     try:
+        nothing = training.nothing_to_do(options.episodes, options.stop_at_schedule)
+        if nothing is not None:
+            return _report_nothing(training, nothing, options)
         if options.resume is None and memory_file.exists() and not options.fresh:
             raise CommandError(
                 f"{memory_file}: is there already; give --resume {memory_file} to go "

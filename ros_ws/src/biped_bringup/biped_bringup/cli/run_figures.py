@@ -7,15 +7,14 @@ from collections.abc import Mapping
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from learner_node.node import NOT_SAVED
 from msgs_json import topics
-from msgs_json.end_cause import EndCause
 
 
 def given_up_walks(graph: GraphWatch) -> dict[str, int]:
-    """Return how many walks of this run were cut off from outside, by cause."""
+    """Return how many walks of this run ended from outside, by cause."""
     return {
-        cause.value: graph.end_causes[cause]
-        for cause in EndCause
-        if cause.from_outside and graph.end_causes[cause]
+        cause.value: walks
+        for cause, walks in graph.end_causes.items()
+        if cause.from_outside
     }
 
 

@@ -192,12 +192,13 @@ def run(options: argparse.Namespace) -> int:
         )
     with exclusive_folder(writable_folder(out)):
         # A learner that finds its memory goes on from it.
+        changes = "" if learned is None else learned.setting_changes
         if options.fresh:
             memory_file.unlink(missing_ok=True)
-        elif learned is not None and learned.setting_changes and not options.greedy:
+        elif learned is not None and changes and not options.greedy:
             learned.save(memory_file)
         supervisor, interrupted, failure = _supervise(
-            options, {name: parameters[name] for name in names}, domain, out, learned
+            options, {name: parameters[name] for name in names}, domain, out, changes
         )
         return report(
             EndedRun(
@@ -217,9 +218,16 @@ def _supervise(
     parameters: Mapping[str, Mapping[str, Any]],
     domain: int,
     folder: Path,
-    learned: TrainingRun | None,
+    changes: str,
 ) -> tuple[Supervisor, bool, str | None]:
     """Run the nodes to their end.
+
+    Args:
+        options: of the command.
+        parameters: of the nodes to start, by node.
+        domain: of the run.
+        folder: for parameter files and logs.
+        changes: settings that are not those of the memory, in words.
 
     Returns:
         The supervisor, whether a signal ended it, and why a node could not be kept
@@ -231,8 +239,8 @@ def _supervise(
     failure = None
     with stop_requests() as stops, screen:
         screen.line(NAME, f"for other terminals: export ROS_DOMAIN_ID={domain}")
-        if learned is not None and learned.setting_changes:
-            screen.line(NAME, f"other settings: {learned.setting_changes}")
+        if changes:
+            screen.line(NAME, f"other settings: {changes}")
         supervisor = Supervisor(parameters, environment, folder, screen.line)
         graph = supervisor.graph
 

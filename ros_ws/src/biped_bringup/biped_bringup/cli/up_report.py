@@ -83,20 +83,20 @@ def report(run: EndedRun) -> int:
 
 def _walked(run: EndedRun) -> dict[str, Any]:
     graph = run.supervisor.graph
-    # What the robot's observations do not bear out has not been walked.
-    result = None if graph.unseen is not None else graph.result
-    status = graph.status
+    result, status = graph.result, graph.status
     walk = {} if result is None else {
         "end_cause": result.end_cause.value,
         "end_time_s": seconds(result.control_ticks),
         "peak_zmp_error_m": result.peak_zmp_error_m,
         "trajectory_sha256": result.trajectory_sha256,
     }  # fmt: skip
-    completed = result is not None and result.completed
+    unseen = graph.unseen
+    completed = result is not None and result.completed and unseen is None
     return {
         "outcome": "walked" if completed else "not walked",
         "completed": completed,
         **walk,
+        "not_borne_out": None if unseen is None else unseen.end_cause.value,
         "memory_sha256": None if status is None else status.memory_sha256,
         "memory_file": str(run.memory_file),
         **_of_any_run(run),
@@ -192,11 +192,8 @@ def _lines(run: EndedRun, summary: Mapping[str, Any]) -> Iterator[str]:
             f"walks   {sum(causes.values())} given up{named}, "
             f"{summary['missed_deadlines']} deadlines missed"
         )
-    for text in summary["strangers"]:
-        yield f"stranger  {text}"
-    unseen = run.supervisor.graph.unseen
-    if unseen is not None:
-        yield f"the robot's observations do not bear out: {unseen.end_cause}"
+    for stranger in summary["strangers"]:
+        yield f"stranger  {stranger}"
     for bag in summary["bags"]:
         yield bag_line(Path(bag))
     if run.failure is not None:
@@ -217,7 +214,12 @@ def _lines(run: EndedRun, summary: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _greedy_lines(summary: Mapping[str, Any]) -> Iterator[str]:
-    if "end_cause" in summary:
+    if summary["not_borne_out"] is not None:
+        yield (
+            "the robot's observations do not bear out: "
+            f"the walk ended as {summary['not_borne_out']}"
+        )
+    elif "end_cause" in summary:
         yield (
             f"greedy walk: {summary['end_cause']} after {summary['end_time_s']:g} s, "
             f"peak ZMP error {1000 * summary['peak_zmp_error_m']:.1f} mm"

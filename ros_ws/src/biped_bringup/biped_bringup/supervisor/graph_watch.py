@@ -75,7 +75,7 @@ class GraphWatch:
         self.remarks: dict[str, str] = {}
         """What each node last said of itself."""
         self.figures: defaultdict[str, dict[str, dict[str, str]]] = defaultdict(dict)
-        """What each node last measured, by name and process."""
+        """What each node last measured, by name and process started here."""
         self.strangers: dict[str, str] = {}
         """Who has ever published beside a control topic's owner, last, by topic."""
         for topic, handle in (
@@ -194,6 +194,7 @@ class GraphWatch:
             if status.name in _NODES and status.hardware_id == process:
                 self.heard_at[status.name] = time.monotonic()
                 self.remarks[status.name] = status.message
-                self.figures[status.name][process] = {
+                own = self._expected.get(status.name, "")
+                self.figures[status.name][own] = {
                     figure.key: figure.value for figure in status.values
                 }
