@@ -23,6 +23,7 @@ from rclpy.publisher import Publisher
 from rclpy.service import Service
 
 from biped_common.settings import AnySettings, SettingsError
+from biped_common.terminal_text import printable
 from biped_ros.messages import message_type
 from biped_ros.parameters import changed_settings, declared_settings
 from biped_ros.process import process_name
@@ -218,8 +219,9 @@ class GuardedNode(Node):  # type: ignore[misc]
 
     def _refuse(self, name: str, kind: str, error: Exception) -> None:
         self.counts[f"{name} {kind}"] += 1
-        self.remark(DiagnosticStatus.WARN, f"{name} {kind}", str(error))
-        self.get_logger().warning(f"{name}: {kind}: {error}", throttle_duration_sec=1.0)
+        text = printable(f"{name}: {kind}: {error}")
+        self.remark(DiagnosticStatus.WARN, f"{name} {kind}", text)
+        self.get_logger().warning(text, throttle_duration_sec=1.0)
 
     def stranger(self, topic: Topic, text: str | None) -> None:
         """Take note of who publishes on a control topic beside its owner.

@@ -18,6 +18,7 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from biped_common.terminal_text import printable
 from biped_ros.messages import message_type
 from biped_ros.qos import qos_profile
 from msgs_json.topics import Topic
@@ -88,7 +89,8 @@ def _node(info: TopicEndpointInfo) -> str:
         return "a node not known yet"
     if info.node_name == _NO_NODE:
         return "a program that is no ROS node"
-    return f"{info.node_namespace.rstrip('/')}/{info.node_name}".lstrip("/")
+    # A program that is no ROS node can call itself anything.
+    return printable(f"{info.node_namespace.rstrip('/')}/{info.node_name}".lstrip("/"))
 
 
 def _place(info: TopicEndpointInfo, own: bytes) -> str:
