@@ -143,7 +143,7 @@ def _check_directory(stream: IO[bytes]) -> None:
     """Refuse a zip with a directory larger than the one of any checkpoint."""
     size = stream.seek(0, os.SEEK_END)
     stream.seek(max(0, size - _ZIP_END.size - _ZIP64_BYTES))
-    tail = stream.read()
+    tail = stream.read(_ZIP_END.size + _ZIP64_BYTES)
     if len(tail) < _ZIP_END.size:
         raise ValueError("too short")
     mark, directory_bytes, _, remark_bytes = _ZIP_END.unpack(tail[-_ZIP_END.size :])

@@ -394,6 +394,11 @@ def test_a_file_is_refused_without_taking_memory_that_holds(tmp_path, what):
     assert re.search(reason, done.stdout)
 
 
+def test_an_endless_device_is_no_checkpoint():
+    with pytest.raises(CheckpointError, match="not a biped checkpoint"):
+        read_checkpoint(Path("/dev/zero"))
+
+
 def test_what_could_not_be_read_again_is_not_written(file):
     before = file.read_bytes()
     with pytest.raises(CheckpointError, match="67108864 at most"):

@@ -61,7 +61,8 @@ def holds_bag(folder: Path) -> bool:
 
 def fresh_folder(folder: Path) -> Path:
     """Return the folder, or with _2, _3, ... behind it the first that is no bag."""
-    numbered = (folder.with_name(f"{folder.name}_{n}") for n in itertools.count(2))
+    name = folder.resolve().name  # that of "." has one, too
+    numbered = (folder.parent / f"{name}_{n}" for n in itertools.count(2))
     candidates = itertools.chain((folder,), numbered)
     return next(path for path in candidates if not holds_bag(path))
 
