@@ -25,7 +25,7 @@ phases = st.builds(
 )
 observations = st.builds(
     Observation,
-    simulation=st.text(),
+    simulation=st.text(max_size=200),
     episode=counts,
     clock_ticks=counts,
     control_tick=counts,
@@ -40,7 +40,7 @@ observations = st.builds(
     torque_integral_n2m2_s=numbers,
     mean_joint_error_rad=numbers,
     mean_joint_velocity_error_rad_s=numbers,
-    trajectory_sha256=st.text(),
+    trajectory_sha256=st.text(max_size=64),
     end_cause=st.none() | st.sampled_from(EndCause),
 )
 
