@@ -14,7 +14,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import yaml
 from rosidl_parser.definition import (
     AbstractGenericString,
     AbstractNestedType,
@@ -23,6 +22,7 @@ from rosidl_parser.definition import (
     NamespacedType,
 )
 
+from biped_common.plain_yaml import YamlError, read_yaml
 from ros2_verbs.errors import VerbError
 from ros2_verbs.messages.text import fields_of, type_name
 from ros2_verbs.options import completed
@@ -70,8 +70,8 @@ def values_of(text: str) -> dict[str, Any]:
         VerbError: it is no YAML, or not a dictionary.
     """
     try:
-        values = yaml.load(text, Loader=yaml.CSafeLoader)
-    except yaml.YAMLError as error:
+        values = read_yaml(text)
+    except YamlError as error:
         raise VerbError(f"The passed value is no valid YAML: {error}") from None
     if values is None:
         return {}

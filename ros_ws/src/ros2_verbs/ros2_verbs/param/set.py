@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-import yaml
 from rclpy.parameter import Parameter
 
+from biped_common.plain_yaml import YamlError, read_yaml
 from ros2_verbs.errors import VerbError
 from ros2_verbs.param.services import (
     add_asked_node_arguments,
@@ -44,7 +44,7 @@ def typed_parameter(name: str, text: str) -> Parameter:
     of several types), is taken as a string; on some of these rclpy's own reader fails.
     """
     try:
-        value = yaml.safe_load(text)
+        value = read_yaml(text)
         return Parameter(name, value=text if value is None else value)
-    except (yaml.YAMLError, TypeError):
+    except (YamlError, TypeError):
         return Parameter(name, value=text)
