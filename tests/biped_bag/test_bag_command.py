@@ -150,13 +150,17 @@ def test_an_export_names_its_tables(bags):
     assert told["/clock"] == {"file": "out/clock.parquet", "rows": 100}
 
 
-@pytest.fixture
-def hostile(biped, tmp_path):
-    """A bag whose topic and run would clear the screen and make lines of their own."""
+NAME = "/a\n/b\x1b[2J"
+NAME_AS_SHOWN = "/a\\n/b\\x1b[2J"
+
+
+@pytest.fixture(params=[NAME, "/a"])
+def hostile(request, biped, tmp_path):
+    """A bag whose topic or run would clear the screen and make lines of their own."""
     run = {"seed": "7\n\x1b[2J", "preset": "\u202e"}
     writer = BagWriter(tmp_path / "bag", records={"biped.run": run})
-    writer.add_topic(BagTopic("/a\n/b\x1b[2J", "std_msgs/msg/String", [RELIABLE]))
-    writer.write(BagMessage("/a\n/b\x1b[2J", string_message("text"), 1, 1, 1))
+    writer.add_topic(BagTopic(request.param, "std_msgs/msg/String", [RELIABLE]))
+    writer.write(BagMessage(request.param, string_message("text"), 1, 1, 1))
     writer.close()
     return biped
 
@@ -169,13 +173,14 @@ def test_names_in_a_bag_do_not_act_on_the_terminal(hostile, verb):
     assert shown == printable(shown, layout=True)
 
 
-def test_a_name_in_a_bag_makes_no_line_of_its_own(hostile):
+@pytest.mark.parametrize("hostile", [NAME], indirect=True)
+def test_a_topic_that_would_act_on_the_terminal_is_refused_in_one_line(hostile):
+    done = hostile("bag", "info", "bag")
+    assert (done.status, done.err.count("\n")) == (2, 1)
+    assert f"topic '{NAME_AS_SHOWN}'" in done.err
+
+
+@pytest.mark.parametrize("hostile", ["/a"], indirect=True)
+def test_what_a_run_says_of_itself_makes_no_line_of_its_own(hostile):
     shown = hostile("bag", "info", "bag").out
-    assert "Topic: /a\\n/b\\x1b[2J | Type: std_msgs/msg/String" in shown
     assert "seed 7\\n\\x1b[2J, preset \\u202e" in shown
-
-
-def test_a_refusal_quotes_names_in_one_line(hostile):
-    done = hostile("bag", "export", "bag", "out", "--topics", "/nobody")
-    assert done.status == 2
-    assert done.err.endswith("there: /a\\n/b\\x1b[2J\n")

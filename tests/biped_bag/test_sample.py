@@ -32,7 +32,7 @@ def test_the_sample_is_small():
     [
         (["--rate", "0"], "--rate 0: must be a number above 0"),
         (["--rate", "fast"], "--rate fast: must be a number above 0"),
-        (["--start", "1e6"], "lasts 18.114 s, so playing cannot start at 1e+06 s"),
+        (["--start", "1e6"], " s, so playing cannot start at 1e+06 s"),
         (["--remap", "/biped/zmp"], "must have the form /topic:=/other"),
         (["--remap", "/nobody:=/x"], "/nobody: not in the bag"),
         (["--remap", "/biped/zmp:=1 2"], "/biped/zmp:=1 2:"),
