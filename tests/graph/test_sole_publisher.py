@@ -1,5 +1,7 @@
 """A control topic is heard while its owner alone publishes there."""
 
+import time
+
 import pytest
 import rclpy
 from rclpy.experimental import EventsExecutor
@@ -134,6 +136,22 @@ def test_nothing_of_those_who_come_and_go_is_ever_heard(listening):
         listening.until(
             lambda heard=heard: len(listening.heard) > heard, says(speak, "owner")
         )
+    assert set(listening.heard) == {"owner"}
+
+
+def test_who_came_and_went_while_nobody_looked_is_not_heard(listening):
+    speak, _ = listening.speaker(OWNER)
+    listening.until(lambda: listening.heard, says(speak, "owner"))
+    other, leave = listening.speaker("flood")
+    time.sleep(1.0)  # to find the subscription, which nobody serves
+    for _ in range(50):
+        other("stranger")
+    time.sleep(0.5)
+    leave()
+    time.sleep(0.5)
+    speak("owner")
+    listening.heard.clear()
+    listening.until(lambda: listening.heard, says(speak, "owner"))
     assert set(listening.heard) == {"owner"}
 
 

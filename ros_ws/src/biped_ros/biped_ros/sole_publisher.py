@@ -11,11 +11,10 @@ subscription is made, which never knew it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
-from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from biped_common.terminal_text import printable
@@ -42,6 +41,11 @@ class Publishers:
     def alone(self, topic: Topic) -> bool:
         """Return whether the owner of a topic publishes on it, and nobody else."""
         return [info.node_name for info in self._of(topic)] == [topic.owner]
+
+    def namesakes(self, topic: Topic) -> bool:
+        """Return whether all publishers of a topic may be its owner, by their names."""
+        names = {info.node_name for info in self._of(topic)}
+        return names <= {topic.owner, _NOT_KNOWN_YET}
 
     def any_on(self, topic: Topic) -> str | None:
         """Name who publishes on a topic; None where nobody does."""
@@ -102,6 +106,62 @@ def _place(info: TopicEndpointInfo, own: bytes) -> str:
     return "another middleware, host unknown"
 
 
+class _Reception:
+    """A subscription that is believed until it has met a second publisher.
+
+    One that came and went while nobody looked is not on the graph any more, but what it
+    said may still wait in the queue. The subscription itself has counted it.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        topic: Topic,
+        handle: Callable[[bytes], None],
+        publishers: Publishers,
+    ) -> None:
+        """Subscribe; arguments as of `SolePublisherListener`."""
+        self._node = node
+        self._topic = topic
+        self._handle = handle
+        self._publishers = publishers
+        self._owner_met = False
+        self.believed = True
+        self._subscription = node.create_subscription(
+            message_type(topic),
+            topic.name,
+            self._received,
+            qos_profile(topic),
+            # Such events are handled later, when the subscription may be gone.
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            raw=True,
+        )
+        # Asked when a message is there: an event of its own would come too late.
+        with self._subscription.handle:
+            self._matched = _rclpy.EventHandle(
+                self._subscription.handle,
+                _rclpy.rcl_subscription_event_type_t.RCL_SUBSCRIPTION_MATCHED,
+            )
+
+    def look(self) -> None:
+        """Stop to believe where more than one publisher has ever been met."""
+        if self.believed and self._matched.take_event().total_count > 1:
+            self.believed = False
+
+    def end(self) -> None:
+        """End the subscription; what still waits in its queue is not heard."""
+        self.believed = False
+        self._matched.destroy_when_not_in_use()
+        self._node.destroy_subscription(self._subscription)
+
+    def _received(self, message: bytes) -> None:
+        self.look()
+        if self.believed and not self._owner_met:
+            self._owner_met = self.believed = self._publishers.alone(self._topic)
+        if self.believed:
+            self._handle(bytes(message))
+
+
 class SolePublisherListener:
     """Takes the messages of a control topic while its owner alone publishes on it."""
 
@@ -130,41 +190,23 @@ class SolePublisherListener:
         self._stranger = stranger
         self._ready = ready
         self._publishers = Publishers(node)
-        self._subscription: Subscription | None = None
-        self._believed = False
+        self._reception: _Reception | None = None
         node.create_timer(_LOOK_PERIOD_S, self._look)
 
     def _look(self) -> None:
         text = self._publishers.strangers(self._topic)
         self._stranger(self._topic, text)
-        if text is not None:
-            self._believed = False
-        if self._subscription is not None and not self._believed:
-            self._node.destroy_subscription(self._subscription)
-            self._subscription = None
+        reception = self._reception
+        if reception is not None:
+            reception.look()
+            if text is not None or not reception.believed:
+                reception.end()
+                self._reception = None
         if (
-            self._subscription is None
+            self._reception is None
             and self._publishers.alone(self._topic)
             and self._ready()
         ):
-            self._believed = True
-            self._subscription = self._node.create_subscription(
-                message_type(self._topic),
-                self._topic.name,
-                self._received,
-                qos_profile(self._topic),
-                event_callbacks=SubscriptionEventCallbacks(matched=self._matched),
-                raw=True,
+            self._reception = _Reception(
+                self._node, self._topic, self._handle, self._publishers
             )
-
-    def _received(self, message: bytes) -> None:
-        # The graph knows of a publisher before his first message is here.
-        if self._node.count_publishers(self._topic.name) != 1:
-            self._believed = False
-        if self._believed:
-            self._handle(bytes(message))
-
-    def _matched(self, status: Any) -> None:
-        """Give the subscription up when a second publisher has ever been met."""
-        if status.total_count > 1:
-            self._believed = False

@@ -33,6 +33,7 @@ _NODES = (
 # A result and the observation that bears it out come by different ways.
 _REMEMBERED_OBSERVATIONS = 100
 _BORNE_OUT_WITHIN_S = 5.0
+_SPIN_LOOK_S = 0.01
 # For this long a node that was started anew meets its predecessor on the graph.
 _PREDECESSOR_S = 10.0
 
@@ -57,6 +58,9 @@ class GraphWatch:
         self._node = rclpy.create_node(NAME, context=self._context)
         self._executor = EventsExecutor(context=self._context)
         self._executor.add_node(self._node)
+        self._over = Future()
+        self._spin_end = 0.0
+        self._node.create_timer(_SPIN_LOOK_S, self._end_spin)
         self._publishers = Publishers(self._node)
         self._joined_at = time.monotonic()
         self.status: LearnerStatus | None = None
@@ -95,13 +99,14 @@ class GraphWatch:
 
     def spin(self, duration_s: float) -> None:
         """Take in what comes during this time."""
+        self._over = Future()
+        self._spin_end = time.monotonic() + duration_s
+        self._executor.spin_until_future_complete(self._over, duration_s)
+
+    def _end_spin(self) -> None:
         # The executor looks at its own time-out only when no message waits.
-        over: Future = Future()
-        timer = self._node.create_timer(
-            duration_s, lambda: None if over.done() else over.set_result(None)
-        )
-        self._executor.spin_until_future_complete(over, duration_s)
-        self._node.destroy_timer(timer)
+        if time.monotonic() >= self._spin_end and not self._over.done():
+            self._over.set_result(None)
 
     def has_node(self, name: str) -> bool:
         """Return whether a node is on the graph and has spoken since `expect`."""
@@ -185,7 +190,8 @@ class GraphWatch:
     def _on_stranger(self, topic: Topic, text: str | None) -> None:
         assert topic.owner is not None
         started_at = self._expected_at.get(topic.owner, -_PREDECESSOR_S)
-        if text is not None and time.monotonic() - started_at > _PREDECESSOR_S:
+        anew = time.monotonic() - started_at < _PREDECESSOR_S
+        if text is not None and not (anew and self._publishers.namesakes(topic)):
             self.strangers[topic.name] = text
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
