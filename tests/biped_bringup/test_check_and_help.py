@@ -20,7 +20,11 @@ UNITS = {
         "--replay-mb": "MB",
     },
     "walk": {"--tds": "[s]"},
-    "up": {"--episodes": "episodes", "--publish-every": "control ticks"},
+    "up": {
+        "--episodes": "episodes",
+        "--publish-every": "control ticks",
+        "--factor": "simulated seconds per second",
+    },
     "check": {},
 }
 

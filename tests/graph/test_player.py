@@ -24,6 +24,10 @@ ALL = [(t.name, t.type_name, t.latched) for t in BAG.topics.values()]
 WITHOUT_DIAGNOSTICS = [t for t in ALL if t[0] != topics.DIAGNOSTICS.name]
 LATCHED = {topic.name for topic in BAG.topics.values() if topic.latched}
 STEPS = len(LATCHED) + 1
+_FIRST = next(BAG.messages([topics.OBSERVATION.name]))
+# Some way into the walk.
+START_S = 2.0 + (_FIRST.log_ns - BAG.start_ns) // 1_000_000_000
+DURATION_S = 1.0
 
 
 def recorded(topic, start_ns=None, end_ns=None):
@@ -109,7 +113,7 @@ class Session:
 def session():
     """Step through a stretch of the walk, play it over and over, and interrupt."""
     done = Session()
-    options = ("--paused", "--loop", "--start", "8", "--duration", "0.5")
+    options = ("--paused", "--loop", "--start", f"{START_S}", "--duration", "0.5")
     with Listener(DOMAIN, ALL) as listener, Player(DOMAIN, *options) as player:
 
         def ask(verb, key):
@@ -175,7 +179,6 @@ def test_ctrl_c_ends_a_paused_loop_with_130(session):
 
 # -- some topics, under other names, with a clock --------------------------------------
 
-START_S, DURATION_S = 8.0, 1.0
 ELSEWHERE = "/recorded/zmp"
 
 
