@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -47,6 +48,12 @@ def ip(*words):
         pytest.skip(f"ip {' '.join(words)}: {done.stderr.strip()}")
 
 
+def connected(host):
+    """Return whether a host's end of the cable works."""
+    words = ["ip", "-n", host, "link", "show", "cable"]
+    return "state UP" in subprocess.run(words, capture_output=True, text=True).stdout
+
+
 @pytest.fixture(scope="module")
 def hosts():
     """Names of two network namespaces with a cable between them."""
@@ -62,6 +69,11 @@ def hosts():
             ip("-n", name, "addr", "add", ADDRESS.format(number), "dev", "cable")
             ip("-n", name, "link", "set", "lo", "up")
             ip("-n", name, "link", "set", "cable", "up")
+        # The middleware looks at the interfaces once, when a node is made.
+        end = time.monotonic() + TIMEOUT_S
+        while not all(map(connected, names)):
+            assert time.monotonic() < end
+            time.sleep(0.05)
         yield names
 
 

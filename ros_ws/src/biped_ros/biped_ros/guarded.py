@@ -61,6 +61,7 @@ class GuardedNode(Node):  # type: ignore[misc]
         """Those that every node has, such as use_sim_time."""
         self._worst = DiagnosticStatus.OK
         self._remarks: dict[str, str] = {}
+        self._listeners: list[SolePublisherListener] = []
         self._strangers: dict[str, str] = {}
         """Who publishes beside the owner, by control topic."""
         self._rated: Counter[str] = Counter()
@@ -70,6 +71,12 @@ class GuardedNode(Node):  # type: ignore[misc]
 
     def close(self) -> None:
         """Let go of what is not ROS's; nodes override it."""
+
+    def destroy_node(self) -> None:
+        """Leave the graph."""
+        for listener in self._listeners:
+            listener.close()
+        super().destroy_node()
 
     def await_acknowledgements(self) -> None:
         """Publish the last diagnostics; wait a little until everything has arrived.
@@ -188,7 +195,9 @@ class GuardedNode(Node):  # type: ignore[misc]
                 message_type(topic), topic.name, received, qos_profile(topic), raw=True
             )
         else:
-            SolePublisherListener(self, topic, received, self.stranger, ready)
+            self._listeners.append(
+                SolePublisherListener(self, topic, received, self.stranger, ready)
+            )
 
     def reaches(self, publisher: Publisher, *peers: str) -> bool:
         """Return whether a publisher is connected to all its subscribers on the graph.

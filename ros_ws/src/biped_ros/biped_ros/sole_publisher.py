@@ -193,6 +193,12 @@ class SolePublisherListener:
         self._reception: _Reception | None = None
         node.create_timer(_LOOK_PERIOD_S, self._look)
 
+    def close(self) -> None:
+        """Listen no more; a node whose subscription is held stays on the graph."""
+        if self._reception is not None:
+            self._reception.end()
+            self._reception = None
+
     def _look(self) -> None:
         text = self._publishers.strangers(self._topic)
         self._stranger(self._topic, text)
@@ -200,8 +206,7 @@ class SolePublisherListener:
         if reception is not None:
             reception.look()
             if text is not None or not reception.believed:
-                reception.end()
-                self._reception = None
+                self.close()
         if (
             self._reception is None
             and self._publishers.alone(self._topic)

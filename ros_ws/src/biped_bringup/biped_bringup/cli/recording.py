@@ -117,13 +117,15 @@ def not_recorded(folder: Path, supervisor: Supervisor) -> list[str]:
     """Return why the recording is not complete, if it is not."""
     recorder = supervisor.children[RECORDER]
     reason = supervisor.done_without.get(RECORDER)
-    if reason is None and recorder.exit_status:
+    bags = bags_of(folder, supervisor)
+    # One that was interrupted before its bag was there has left nothing out.
+    if reason is None and recorder.exit_status and bags:
         reason = recorder.last_line
     if reason is not None:
         return [f"the rest of the bag: {reason}"]
     return [
         f"the rest of {bag}: {state}"
-        for bag in bags_of(folder, supervisor)
+        for bag in bags
         if (state := _state(bag)) != COMPLETE
     ]
 

@@ -59,7 +59,16 @@ from trajectory_node.waist_reference import WaistReference
 _ATTEMPTS = 5
 _DEFAULT_OUT = Path("bags/up")
 # Settings of nodes that are given as options.
-_OPTIONS = {"publish_every_ticks": "--publish-every", "seed": "--seed"}
+# By the setting that each gives.
+_OPTIONS = {
+    "publish_every_ticks": "--publish-every",
+    "seed": "--seed",
+    "fifo_priority": "--fifo",
+    "nice": "--nice",
+    "cores": "--cores",
+    "look_ahead_ticks": "--look-ahead",
+    "realtime_factor": "--factor",
+}
 _ALL_NODES = ",".join(name.removesuffix("_node") for name in START_ORDER)
 
 

@@ -82,13 +82,16 @@ class GraphWatch:
         """What each node last measured, by name and process started here."""
         self.strangers: dict[str, str] = {}
         """Who has ever published beside a control topic's owner, last, by topic."""
+        self._listeners: list[SolePublisherListener] = []
         for topic, handle in (
             (topics.LEARNER_STATUS, self._on_status),
             (topics.EPISODE, self._on_episode),
             (topics.OBSERVATION, self._on_observation),
         ):
-            SolePublisherListener(
-                self._node, topic, self._guarded(topic, handle), self._on_stranger
+            self._listeners.append(
+                SolePublisherListener(
+                    self._node, topic, self._guarded(topic, handle), self._on_stranger
+                )
             )
         self._node.create_subscription(
             DiagnosticArray,
@@ -139,6 +142,8 @@ class GraphWatch:
     def close(self) -> None:
         """Leave the domain."""
         self._executor.shutdown()
+        for listener in self._listeners:
+            listener.close()
         self._node.destroy_node()
         rclpy.try_shutdown(context=self._context)
 
