@@ -25,7 +25,9 @@ dev: $(DEV)  ## add what `make test` needs: pytest, mypy, colcon, Pinocchio and 
 
 run: $(READY)  ## learn a walk on ROS 2, walk it in real time, draw its ZMP
 	$(BIN)/biped up --preset quick --fresh --publish-every 10 --out $(OUT)
-	$(BIN)/biped up --greedy --pace realtime --fifo 50 --out $(OUT)
+	$(BIN)/biped up --greedy --pace realtime --fifo 50 --out $(OUT) \
+		|| { echo "real time was not kept; the same walk in lockstep:"; \
+		$(BIN)/biped up --greedy --out $(OUT); }
 	$(BIN)/biped walk --memory $(OUT)/memory.npz --figure $(OUT)/zmp.png
 
 test: $(DEV)  ## run the tests

@@ -174,6 +174,15 @@ def test_a_run_that_has_walked_all_its_episodes_has_nothing_to_do(biped):
     assert resumed.out.endswith(": 2 of at most 2 episodes are walked\n")
 
 
+def test_on_the_graph_nodes_with_nothing_to_do_are_not_started(biped, tmp_path):
+    biped(*SHORT_LEARN, "--episodes", 2)
+    files = sorted(tmp_path.rglob("*"))
+    resumed = biped("up", "--resume", "--out", "out", "--episodes", 2)
+    assert resumed.status == 1
+    assert resumed.out.endswith(": 2 of at most 2 episodes are walked\n")
+    assert sorted(tmp_path.rglob("*")) == files
+
+
 def test_a_learned_run_goes_on_under_other_settings_and_says_so(biped):
     episodes = biped(*SHORT_LEARN).values["episodes"]
     pushed = ("--set", "sim.disturbances.push_force_n=10")

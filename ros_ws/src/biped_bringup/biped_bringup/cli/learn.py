@@ -107,7 +107,10 @@ def run(options: argparse.Namespace) -> int:
     try:
         nothing = training.nothing_to_do(options.episodes, options.stop_at_schedule)
         if nothing is not None:
-            return _report_nothing(training, nothing, options)
+            summary = report_nothing(
+                training, nothing, options.resume, json=options.json
+            )
+            return _status(summary, options)
         if options.resume is None and memory_file.exists() and not options.fresh:
             raise CommandError(
                 f"{memory_file}: is there already; give --resume {memory_file} to go "
@@ -178,16 +181,16 @@ def _status(summary: dict[str, Any], options: argparse.Namespace) -> int:
     return DONE if summary[done] else NOT_ACHIEVED
 
 
-def _report_nothing(
-    training: TrainingRun, reason: str, options: argparse.Namespace
-) -> int:
-    """Say that a resumed run has come to its end already; nothing is written."""
-    summary = training.summary(options.resume)
-    if options.json:
+def report_nothing(
+    training: TrainingRun, reason: str, memory_file: Path, *, json: bool
+) -> dict[str, Any]:
+    """Say that a resumed run has come to its end already; return its summary."""
+    summary = training.summary(memory_file)
+    if json:
         print_json(summary)
     else:
-        print(f"nothing to do with {options.resume}: {reason}")
-    return _status(summary, options)
+        print(f"nothing to do with {memory_file}: {reason}")
+    return summary
 
 
 def _print(summary: dict[str, Any], folder: Path, interrupted: bool) -> None:

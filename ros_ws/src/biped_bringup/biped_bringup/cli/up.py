@@ -11,7 +11,7 @@ from typing import Any
 from rich.console import Console
 
 from biped_bag.records import run_record
-from biped_bringup.cli.learn import MEMORY_FILE
+from biped_bringup.cli.learn import MEMORY_FILE, report_nothing
 from biped_bringup.cli.options import (
     add_settings_options,
     gone_on_with,
@@ -37,6 +37,8 @@ from biped_bringup.supervisor.supervisor import (
 )
 from biped_bringup.training import TrainingRun
 from biped_common.command_line import (
+    DONE,
+    NOT_ACHIEVED,
     CommandError,
     add_json_option,
     natural,
@@ -162,6 +164,11 @@ def run(options: argparse.Namespace) -> int:
     out = options.out.resolve()
     memory_file = out / MEMORY_FILE
     learned = _learned(options, memory_file)
+    if learned is not None and not options.greedy:
+        nothing = learned.nothing_to_do(options.episodes, stop_at_schedule=False)
+        if nothing is not None:
+            report_nothing(learned, nothing, memory_file, json=options.json)
+            return DONE if learned.learned else NOT_ACHIEVED
     settings, seed = _settings_and_seed(options, learned)
     # Refuses here a gait that the robot cannot walk.
     WaistReference(Robot(settings.robot), settings.gait, settings.correction)
