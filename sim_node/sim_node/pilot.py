@@ -38,6 +38,8 @@ class Pilot:
         """The last one given out."""
         self.segment: WaistSegment | None = None
         """The one that is followed."""
+        self._followed_ticks: int | None = None
+        """Time of the observation that it answers (real time)."""
 
     @property
     def walking(self) -> bool:
@@ -80,6 +82,7 @@ class Pilot:
         except ValueError as error:
             raise RefusedMessageError(str(error)) from None
         self.segment = segment
+        self._followed_ticks = clock_ticks
 
     def observe(self) -> Observation:
         """Sum up what was walked since the last observation (real time)."""
@@ -116,13 +119,18 @@ class Pilot:
         """Return the observation that a segment of this time answers.
 
         Raises:
-            RefusedMessageError: it is not the present one, or the walk is over.
+            RefusedMessageError: it is not the present one, has been answered, or the walk
+                is over.
         """
         observation = self.observation
         expected = None if observation is None else observation.clock_ticks
         if observation is None or clock_ticks != expected:
             raise RefusedMessageError(
                 f"segment for clock tick {clock_ticks}, the robot waits at {expected}"
+            )
+        if clock_ticks == self._followed_ticks:
+            raise RefusedMessageError(
+                f"a second segment for clock tick {clock_ticks}, which has been answered"
             )
         if self.biped.end_cause is not None:
             raise RefusedMessageError(f"the walk is over: {self.biped.end_cause}")

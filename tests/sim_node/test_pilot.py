@@ -122,6 +122,18 @@ def test_a_segment_that_comes_twice_is_refused(pilot, static_walk):
         pilot.execute(at, static_walk[0])
 
 
+def test_a_second_segment_for_an_observation_is_refused_while_the_first_is_walked(
+    pilot, static_walk
+):
+    at = pilot.begin().clock_ticks
+    pilot.follow(at, static_walk[0])
+    pilot.biped.advance()
+    elsewhere = dataclasses.replace(static_walk[0], waist=static_walk[0].waist + 0.02)
+    with refused(f"a second segment for clock tick {at}, which has been answered"):
+        pilot.follow(at, elsewhere)
+    assert pilot.segment is static_walk[0]
+
+
 @EVERY_WAY
 def test_a_segment_of_another_place_in_the_walk_is_refused(pilot, static_walk, way):
     at = pilot.begin().clock_ticks
