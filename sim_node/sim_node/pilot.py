@@ -119,8 +119,8 @@ class Pilot:
         """Return the observation that a segment of this time answers.
 
         Raises:
-            RefusedMessageError: it is not the present one, has been answered, or the walk
-                is over.
+            RefusedMessageError: it is not the present one, or has been answered, or the
+                walk is over.
         """
         observation = self.observation
         expected = None if observation is None else observation.clock_ticks
@@ -130,7 +130,7 @@ class Pilot:
             )
         if clock_ticks == self._followed_ticks:
             raise RefusedMessageError(
-                f"a second segment for clock tick {clock_ticks}, which has been answered"
+                f"a second segment for clock tick {clock_ticks}, which is answered"
             )
         if self.biped.end_cause is not None:
             raise RefusedMessageError(f"the walk is over: {self.biped.end_cause}")

@@ -129,7 +129,7 @@ def test_a_second_segment_for_an_observation_is_refused_while_the_first_is_walke
     pilot.follow(at, static_walk[0])
     pilot.biped.advance()
     elsewhere = dataclasses.replace(static_walk[0], waist=static_walk[0].waist + 0.02)
-    with refused(f"a second segment for clock tick {at}, which has been answered"):
+    with refused(f"a second segment for clock tick {at}, which is answered"):
         pilot.follow(at, elsewhere)
     assert pilot.segment is static_walk[0]
 
