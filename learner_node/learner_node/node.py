@@ -29,7 +29,12 @@ from biped_ros.observation_gaps import ObservationGaps
 from biped_ros.process import process_name
 from biped_ros.running import claim_processor, run_node
 from biped_ros.sole_publisher import Publishers
-from learner_node.checkpoint import read_checkpoint, taking_over, write_checkpoint
+from learner_node.checkpoint import (
+    CheckpointError,
+    read_checkpoint,
+    taking_over,
+    write_checkpoint,
+)
 from learner_node.settings import LearnerNodeSettings
 from learner_node.walking.session import LearningSession
 from msgs_json import topics
@@ -135,8 +140,12 @@ class LearnerNode(GuardedNode):
         header = {"settings": self._run_settings, **self.session.header()}
         try:
             write_checkpoint(self._file, header, self.session.arrays())
-        except OSError as error:
-            text = f"{self._file}: cannot be written: {error.strerror}"
+        except (OSError, CheckpointError) as error:
+            text = (
+                f"{self._file}: cannot be written: {error.strerror}"
+                if isinstance(error, OSError)
+                else str(error)
+            )
             self.get_logger().error(text)
             self.remark(DiagnosticStatus.ERROR, "checkpoint", text)
             self._not_saved = text

@@ -8,6 +8,7 @@ from tests.graph.clients import TIMEOUT_S, Client, hashes, learned_in_process, q
 
 from biped_bringup.one_executor import OneExecutor
 from biped_bringup.training import TrainingRun
+from learner_node import checkpoint
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
@@ -200,6 +201,20 @@ def test_a_save_that_fails_is_told_and_ends_nothing(domain, tmp_path):
         )
         file.rmdir()
         assert client.call(Trigger, SAVE).success
+
+
+def test_a_memory_that_has_grown_too_large_is_told_and_ends_nothing(
+    domain, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(checkpoint, "MOST_BYTES", 1000)
+    file = tmp_path / "memory.npz"
+    parameters = quick(checkpoint_file=str(file), max_episodes=2)
+    with OneExecutor(parameters, domain) as graph, Client(graph) as client:
+        session = graph.learner.session
+        assert graph.spin_until(lambda: session.episodes == 2, TIMEOUT_S)
+        response = client.call(Trigger, SAVE)
+        assert (response.success, file.exists()) == (False, False)
+        assert response.message.endswith("bytes, 1000 at most")
 
 
 # -- freeze ----------------------------------------------------------------------------
