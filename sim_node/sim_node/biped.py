@@ -211,6 +211,7 @@ class SimulatedBiped:
         references, status = solve(self.robot, segment, rows)
         if references.rows <= segment.n_ticks:
             watch.end_cause = _IK_END_CAUSE[status]
+            watch.clock_ticks += 1  # no two observations share one
             return
         self._references = references
 

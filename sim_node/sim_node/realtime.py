@@ -141,6 +141,9 @@ class RealtimeLoop:
         """Take note that the last observation has been answered."""
         self._answered = True
         self._punctuality.segment(time.monotonic_ns() - self._observed_ns)
+        cause = self._pilot.biped.end_cause
+        if cause is not None:  # the legs cannot follow it
+            self.end(cause)
 
     def end(self, cause: EndCause) -> None:
         """End the walk from outside."""

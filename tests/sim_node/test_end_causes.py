@@ -164,6 +164,12 @@ def test_a_segment_that_the_legs_cannot_follow_is_not_begun(walker, static_walk)
     assert (end.control_tick, len(walker.ticks)) == (30, 30)
 
 
+def test_an_end_without_a_control_tick_has_a_moment_of_its_own(walker, static_walk):
+    before = walker.walk(static_walk[:3])[-1].clock_ticks
+    end = walker.robot.execute(shift_waist(static_walk[3], (0.0, 0.0, 0.2), 10))
+    assert end.clock_ticks == before + 1
+
+
 def test_what_lies_beyond_the_segment_does_not_matter(sturdy_walker, static_walk):
     sturdy_walker.walk(static_walk[:3])
     five_ticks = dataclasses.replace(static_walk[3], n_ticks=5)

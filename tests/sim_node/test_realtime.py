@@ -89,6 +89,15 @@ def robot(new_walker):
 # -- deadlines -------------------------------------------------------------------------
 
 
+def test_a_segment_that_the_legs_cannot_follow_ends_the_walk_and_is_told(robot):
+    first, second, *_ = segments_of()
+    too_high = replace(second, waist=second.waist + np.array([0.0, 0.0, 0.2]))
+    told = Guided(robot, [first, too_high], answers=2).walk()
+    assert told[-1].end_cause is EndCause.IK_UNREACHABLE
+    assert told[-1].control_tick == told[-2].control_tick == 10
+    assert told[-1].clock_ticks > told[-2].clock_ticks
+
+
 def test_a_walk_that_is_answered_in_time_is_walked_to_its_end(robot):
     guided = Guided(robot, segments_of(), answers=4)
     assert [each.control_tick for each in guided.walk()] == [0, 10, 20, 30, 40]

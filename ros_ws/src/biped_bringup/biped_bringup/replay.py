@@ -51,6 +51,8 @@ class _Node:
     """The last one of the sequence, (2,) float64 [m]."""
     observation: Observation
     """Episode and clock are those of the robot when it was here."""
+    clock_ticks: int
+    """Since the walk began. An end that comes without a control tick takes one, too."""
     last_walk: int
     """Number of the last walk that came here, at least that of all nodes after it."""
     snapshot: _Snapshot | None = None
@@ -114,7 +116,7 @@ class ReplayingWalker(Walker):
         self._walks += 1
         self._begun_ticks = self._clock_ticks + 1
         if self._root is None:
-            self._root = self._new_node(b"", self._begin())
+            self._root = self._new_node(b"", self._begin(), 0)
             self._robot_at = self._root
         path = [self._root]
         answer = self._ask(responder, self._root)
@@ -140,10 +142,11 @@ class ReplayingWalker(Walker):
 
     def _ask(self, responder: Responder, node: _Node) -> Answer:
         node.last_walk = self._walks
-        observation = node.observation
-        self._clock_ticks = self._begun_ticks + observation.control_tick
+        self._clock_ticks = self._begun_ticks + node.clock_ticks
         return responder.respond(
-            replace(observation, episode=self._walks, clock_ticks=self._clock_ticks)
+            replace(
+                node.observation, episode=self._walks, clock_ticks=self._clock_ticks
+            )
         )
 
     # -- beyond the tree -----------------------------------------------------------
@@ -156,7 +159,10 @@ class ReplayingWalker(Walker):
         if node is not self._robot_at:
             self._take_robot_to(path)
         while not isinstance(answer, EpisodeResult):
-            following = self._new_node(answer.tobytes(), self._execute(answer))
+            before = self.biped.clock_ticks
+            observation = self._execute(answer)
+            clock_ticks = node.clock_ticks + self.biped.clock_ticks - before
+            following = self._new_node(answer.tobytes(), observation, clock_ticks)
             node.after += (following,)
             self._robot_at = node = following
             ticks += 1
@@ -199,8 +205,10 @@ class ReplayingWalker(Walker):
 
     # -- memory --------------------------------------------------------------------
 
-    def _new_node(self, correction: bytes, observation: Observation) -> _Node:
-        node = _Node(correction, observation, self._walks)
+    def _new_node(
+        self, correction: bytes, observation: Observation, clock_ticks: int
+    ) -> _Node:
+        node = _Node(correction, observation, clock_ticks, self._walks)
         self.used_bytes += node.own_bytes
         return node
 
