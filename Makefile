@@ -31,7 +31,7 @@ run: $(READY)  ## learn a walk on ROS 2, walk it in real time, draw its ZMP
 	$(BIN)/biped walk --memory $(OUT)/memory.npz --figure $(OUT)/zmp.png
 
 test: $(DEV)  ## run the tests
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 lint: $(DEV)  ## check style, types and the direction of imports
 	$(BIN)/ruff check .

@@ -144,8 +144,15 @@ class _Reception:
             )
 
     def look(self) -> None:
-        """Stop to believe where more than one publisher has ever been met."""
-        if self.believed and self._matched.take_event().total_count > 1:
+        """Stop to believe where more than one publisher is there, or has ever been met.
+
+        One that has just come is on the graph before it is met, and one that has gone
+        has been met before.
+        """
+        if self.believed and (
+            self._node.count_publishers(self._topic.name) > 1
+            or self._matched.take_event().total_count > 1
+        ):
             self.believed = False
 
     def end(self) -> None:
