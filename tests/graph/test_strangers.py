@@ -188,7 +188,10 @@ def test_a_forged_success_is_no_success(domain, tmp_path):
     run.close()
     with (
         foreign(domain, "forged_results") as stranger,
-        up(domain, tmp_path, "--greedy") as process,
+        # Slowly, so that the stranger comes before the walk is over.
+        up(
+            domain, tmp_path, "--greedy", "--pace", "realtime", "--factor", "0.2"
+        ) as process,
     ):
         disturb(process, stranger)
         status = ended(process)
