@@ -23,6 +23,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from biped_common.settings import from_json, to_mapping
 from biped_ros.cdr import string_message, string_text
+from biped_ros.environment import LEASE_S
 from biped_ros.guarded import GuardedNode
 from biped_ros.messages import correction_template
 from biped_ros.observation_gaps import ObservationGaps
@@ -48,8 +49,8 @@ NOT_SAVED = "not saved"
 """In /diagnostics: why the last checkpoint could not be written; empty if it was."""
 _STATUS_PERIOD_S = 1.0
 _LOOK_PERIOD_S = 0.1
-# The lease after which a killed node is off the graph (fastdds_profile.xml), and a bit.
-_PREDECESSOR_S = 7.0
+# Until a learner that was killed is off the graph.
+_PREDECESSOR_S = LEASE_S + 2.0
 
 
 class LearnerNode(GuardedNode):
@@ -91,8 +92,7 @@ class LearnerNode(GuardedNode):
         self._saved_episodes: int | None = None
         self._not_saved = ""
         """Why the last checkpoint could not be written."""
-        self._gaps = ObservationGaps()
-        self._seen = ("", -1)
+        self._anew()
         self._template = correction_template()
         self._corrections: Publisher | None = None
         self.create_service(Trigger, f"{NAME}/save_memory", self._on_save)
@@ -120,12 +120,18 @@ class LearnerNode(GuardedNode):
                     self._corrections: topics.TRAJECTORY_NODE,
                     self._episodes: topics.SIM_NODE,
                 },
+                self._anew,
             )
             self._publish_status()
         elif time.monotonic() - self._started < _PREDECESSOR_S:
             self._waiting = self.create_timer(_LOOK_PERIOD_S, self._take_part)
         else:
             self.failure = f"another learner is on this graph already: {other}"
+
+    def _anew(self) -> None:
+        """Forget the robot that was heard."""
+        self._gaps = ObservationGaps()
+        self._seen = ("", -1)
 
     def close(self) -> None:
         """Save what was learned, without the walk under way, once it has taken part."""

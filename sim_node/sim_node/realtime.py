@@ -28,6 +28,10 @@ from msgs_json.end_cause import EndCause
 from msgs_json.observation import Observation
 from sim_node.pilot import Pilot
 
+# Figures in /diagnostics.
+MISSED_DEADLINES = "missed 20 ms deadlines"
+SIMULATED_PER_REAL_TIME = "simulated per real time"
+
 _REMEMBERED_TICKS = 10_000
 _STALL_TICKS = 2
 """Control ticks by which the thread may be behind before the time is lost."""
@@ -65,8 +69,8 @@ class Punctuality:
         figures = {
             "control ticks": str(self.ticks),
             "control ticks [Hz]": f"{rate_hz:.1f}",
-            "simulated per real time": f"{rate_hz * CONTROL_PERIOD_S:.3f}",
-            "missed 20 ms deadlines": str(self.missed_deadlines),
+            SIMULATED_PER_REAL_TIME: f"{rate_hz * CONTROL_PERIOD_S:.3f}",
+            MISSED_DEADLINES: str(self.missed_deadlines),
             "real time lost [ms]": f"{self.lost_ns / 1e6:.1f}",
         }
         for name, values in (

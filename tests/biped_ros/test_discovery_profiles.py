@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 
-from biped_ros.environment import PROFILE_VARIABLE, node_environment
+from biped_ros.environment import LEASE_S, PROFILE_VARIABLE, node_environment
 
 
 def texts(discovery_range, element):
@@ -18,6 +18,11 @@ def texts(discovery_range, element):
 @pytest.mark.parametrize("element", ["discovery_config", "data_writer"])
 def test_all_discover_and_repair_alike_wherever_they_look(element):
     assert texts("LOCALHOST", element) == texts("SUBNET", element)
+
+
+def test_the_lease_is_as_the_nodes_expect_it():
+    tag = "{http://www.eprosima.com}sec"
+    assert texts("SUBNET", "leaseDuration")[1:] == [f"{tag} {LEASE_S:g}"]
 
 
 def test_what_is_local_stays_on_the_loopback_interface():

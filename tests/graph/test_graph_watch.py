@@ -21,6 +21,7 @@ from biped_ros.qos import qos_profile
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.wire import encode
+from sim_node.realtime import MISSED_DEADLINES
 
 OWN, OTHER = "host:12", "host:13"
 TIMEOUT_S = 20.0
@@ -221,10 +222,18 @@ def test_walks_that_were_given_up_are_counted_by_cause(watch, speaker):
 def test_deadlines_are_counted_over_all_processes_of_the_robot(watch, speaker):
     for process, missed in ((OTHER, "2"), (OTHER, "3"), (OWN, "4")):
         watch.expect(topics.SIM_NODE, process)
-        figures = {"missed 20 ms deadlines": missed}
+        figures = {MISSED_DEADLINES: missed}
         speaker.diagnostics(process, topics.SIM_NODE, **figures)
         assert hears(watch, lambda: topics.SIM_NODE in watch.heard_at)
     assert missed_deadlines(watch) == 3 + 4
+
+
+def test_figures_that_are_no_numbers_are_passed_over(watch, speaker):
+    for process, missed in ((OWN, "2"), (OTHER, "many"), ("host:14", "9" * 5000)):
+        watch.expect(topics.SIM_NODE, process)
+        speaker.diagnostics(process, topics.SIM_NODE, **{MISSED_DEADLINES: missed})
+        assert hears(watch, lambda: topics.SIM_NODE in watch.heard_at)
+    assert missed_deadlines(watch) == 2
 
 
 def test_before_nodes_are_heard_nothing_is_measured(watch):

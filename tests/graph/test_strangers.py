@@ -190,7 +190,7 @@ def test_a_forged_success_is_no_success(domain, tmp_path):
         foreign(domain, "forged_results") as stranger,
         # Slowly, so that the stranger comes before the walk is over.
         up(
-            domain, tmp_path, "--greedy", "--pace", "realtime", "--factor", "0.2"
+            domain, tmp_path, "--greedy", "--pace", "realtime", "--factor", "0.5"
         ) as process,
     ):
         disturb(process, stranger)

@@ -228,3 +228,15 @@ def test_a_refused_correction_leaves_no_trace(maker, clock_ticks, correction):
         maker.correct(clock_ticks, np.array(correction))
     found = maker.correct(START + 10, -LEAN)
     assert_same(found, reference.segment(-LEAN))
+
+
+# -- who is heard anew -----------------------------------------------------------------
+
+
+def test_after_a_forged_observation_the_robot_that_is_heard_anew_is_followed(maker):
+    join(maker, 0)
+    maker.observe(seen(10, start=START + 10**9))
+    with refused("comes after that of"):
+        maker.observe(seen(0, start=START + 500))
+    maker.forget()
+    assert join(maker, 0, start=START + 500).first_tick == 0

@@ -56,8 +56,16 @@ class TrajectoryNode(GuardedNode):
         self._plan.publish(string_message(encode(reference.walk_plan())))
         self.listen(topics.CORRECTION, self._on_correction)
         self.listen(
-            topics.OBSERVATION, self._on_observation, {self._segments: topics.SIM_NODE}
+            topics.OBSERVATION,
+            self._on_observation,
+            {self._segments: topics.SIM_NODE},
+            self._anew,
         )
+
+    def _anew(self) -> None:
+        """Forget the robot that was heard."""
+        self._maker.forget()
+        self._gaps = ObservationGaps()
 
     def _on_observation(self, message: bytes) -> None:
         observation = decode(Observation, string_text(message))

@@ -27,9 +27,16 @@ class SegmentMaker:
         """
         self._reference = reference
         self._limit_m = limit_m
-        self._observation: Observation | None = None
+        self._observation: Observation | None
+        self._answered: bool
+        self._early: tuple[int, NDArray[np.float64]] | None
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget what was observed, and wait for the start of a walk."""
+        self._observation = None
         self._answered = True
-        self._early: tuple[int, NDArray[np.float64]] | None = None
+        self._early = None
 
     def observe(self, observation: Observation) -> WaistSegment | None:
         """Take an observation; return the segment if its correction is here already.

@@ -11,6 +11,8 @@ from biped_common.errors import BipedError
 # A private domain unless one is given: 0 is everybody's default, 101 the last that is
 # safe on every system.
 FIRST_PRIVATE_DOMAIN, LAST_PRIVATE_DOMAIN = 2, 101
+LEASE_S = 5.0
+"""For so long a killed node stays on the graph; as in the profiles of Fast DDS."""
 LAST_DOMAIN = 232  # beyond it, ports would be beyond 65,535
 LOCALHOST = "LOCALHOST"
 DISCOVERY_RANGES = (LOCALHOST, "SUBNET")

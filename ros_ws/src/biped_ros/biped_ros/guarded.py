@@ -168,6 +168,7 @@ class GuardedNode(Node):  # type: ignore[misc]
         topic: Topic,
         handle: Callable[[bytes], None],
         answers: Mapping[Publisher, str] | None = None,
+        anew: Callable[[], None] = lambda: None,
     ) -> None:
         """Hand every message of a topic, as serialized bytes, to a guarded handler.
 
@@ -181,6 +182,8 @@ class GuardedNode(Node):  # type: ignore[misc]
                 waits for each. Middleware connects publishers and subscribers one by
                 one: a node that answers before its answer is wanted speaks to nobody,
                 and the walk waits in vain. So messages come once answers get through.
+            anew: told before messages of a control topic come, again and again: what
+                was heard before need not be so.
         """
 
         def received(message: bytes) -> None:
@@ -196,7 +199,7 @@ class GuardedNode(Node):  # type: ignore[misc]
             )
         else:
             self._listeners.append(
-                SolePublisherListener(self, topic, received, self.stranger, ready)
+                SolePublisherListener(self, topic, received, self.stranger, ready, anew)
             )
 
     def reaches(self, publisher: Publisher, *peers: str) -> bool:

@@ -179,6 +179,7 @@ class SolePublisherListener:
         handle: Callable[[bytes], None],
         stranger: Callable[[Topic, str | None], None],
         ready: Callable[[], bool] = lambda: True,
+        anew: Callable[[], None] = lambda: None,
     ) -> None:
         """Begin to look; messages come as soon as they can be believed.
 
@@ -190,12 +191,14 @@ class SolePublisherListener:
                 None for nobody.
             ready: asked before the subscription is made, now and again after a stranger
                 has left.
+            anew: told when it is made: what was heard before need not be so.
         """
         self._node = node
         self._topic = topic
         self._handle = handle
         self._stranger = stranger
         self._ready = ready
+        self._anew = anew
         self._publishers = Publishers(node)
         self._reception: _Reception | None = None
         node.create_timer(_LOOK_PERIOD_S, self._look)
@@ -219,6 +222,7 @@ class SolePublisherListener:
             and self._publishers.alone(self._topic)
             and self._ready()
         ):
+            self._anew()
             self._reception = _Reception(
                 self._node, self._topic, self._handle, self._publishers
             )

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from biped_bringup.supervisor.graph_watch import GraphWatch
 from learner_node.node import NOT_SAVED
 from msgs_json import topics
+from sim_node.realtime import MISSED_DEADLINES, SIMULATED_PER_REAL_TIME
 
 
 def given_up_walks(graph: GraphWatch) -> dict[str, int]:
@@ -20,15 +21,17 @@ def given_up_walks(graph: GraphWatch) -> dict[str, int]:
 
 def missed_deadlines(graph: GraphWatch) -> int:
     """Return how many deadlines the robot missed, over all its processes."""
-    return sum(
-        int(figures.get("missed 20 ms deadlines", 0))
+    told = (
+        figures.get(MISSED_DEADLINES, "")
         for figures in graph.figures[topics.SIM_NODE].values()
     )
+    # /diagnostics are open to all: a figure may be no number.
+    return sum(int(text) for text in told if text.isdecimal() and len(text) < 10)
 
 
 def simulated_per_real_time(graph: GraphWatch) -> str:
     """Return the robot's speed over the last second; `-` before it was heard."""
-    return _last(graph, topics.SIM_NODE).get("simulated per real time", "-")
+    return _last(graph, topics.SIM_NODE).get(SIMULATED_PER_REAL_TIME, "-")
 
 
 def not_saved_because(graph: GraphWatch) -> str:

@@ -55,6 +55,7 @@ from biped_ros.environment import (
     node_environment,
     private_domain,
 )
+from msgs_json.topics import LEARNER_NODE
 from trajectory_node.waist_reference import WaistReference
 
 # On a busy machine a peer can be too late in real time, which is not the walk's fault.
@@ -164,7 +165,7 @@ def run(options: argparse.Namespace) -> int:
     out = options.out.resolve()
     memory_file = out / MEMORY_FILE
     learned = _learned(options, memory_file)
-    if learned is not None and not options.greedy:
+    if learned is not None and not options.greedy and LEARNER_NODE in names:
         nothing = learned.nothing_to_do(options.episodes, stop_at_schedule=False)
         if nothing is not None:
             report_nothing(learned, nothing, memory_file, json=options.json)

@@ -13,6 +13,7 @@ from rclpy.task import Future
 
 from biped_common.terminal_text import printable
 from biped_ros.cdr import string_text
+from biped_ros.environment import LEASE_S
 from biped_ros.qos import qos_profile
 from biped_ros.sole_publisher import Publishers, SolePublisherListener
 from msgs_json import topics
@@ -35,7 +36,7 @@ _REMEMBERED_OBSERVATIONS = 100
 _BORNE_OUT_WITHIN_S = 5.0
 _SPIN_LOOK_S = 0.01
 # For this long a node that was started anew meets its predecessor on the graph.
-_PREDECESSOR_S = 10.0
+_PREDECESSOR_S = 2.0 * LEASE_S
 
 
 class GraphWatch:

@@ -30,6 +30,7 @@ from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
 from biped_common.command_line import WRONG_INPUT
 from biped_common.errors import BipedError
+from biped_ros.environment import LEASE_S
 from biped_ros.process import process_name
 from biped_ros.running import REFUSED
 from msgs_json import topics
@@ -54,8 +55,8 @@ class Patience:
 
     discovery_s: float = 1.0
     """To learn who is on the graph, before the first node is started."""
-    predecessor_s: float = 8.0
-    """For the nodes of a run that was killed to be off the graph; their lease is 5."""
+    predecessor_s: float = LEASE_S + 3.0
+    """For the nodes of a run that was killed to be off the graph."""
     ready_s: float = 60.0
     """For a node to appear on the graph; the first start compiles."""
     silence_s: float = 15.0
