@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,10 @@ class MethodSettings(Settings):
     states: StateSettings = section(StateSettings)
     xol: XolSettings = section(XolSettings)
     q_lambda: QLambdaSettings = section(QLambdaSettings)
+
+
+MakeLearner = Callable[[MethodSettings, Problem, np.random.Generator], Learner]
+"""Makes a learner that knows nothing yet; see `make_learner`."""
 
 
 def make_learner(

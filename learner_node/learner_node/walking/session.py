@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from biped_common.seeds import learner_stream
 from biped_common.timing import seconds
 from learner_node.memory import Arrays, arrays_sha256
-from learner_node.methods import make_learner
+from learner_node.methods import MakeLearner, make_learner
 from learner_node.walking.cost import CostIntegral
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.settings import LearnerSettings
@@ -82,19 +82,26 @@ class _Header(msgspec.Struct):
 class LearningSession:
     """Answers observations, learns from them, and tries the walk frozen when due."""
 
-    def __init__(self, settings: LearnerSettings, walk_ticks: int, seed: int) -> None:
+    def __init__(
+        self,
+        settings: LearnerSettings,
+        walk_ticks: int,
+        seed: int,
+        make: MakeLearner = make_learner,
+    ) -> None:
         """Start from nothing.
 
         Args:
             settings: all constants of the learner.
             walk_ticks: control ticks of the whole walk.
             seed: of every random choice of the learner.
+            make: who learns; by default whom the settings name.
         """
         self.settings = settings
         self.seed = seed
         self.walk_ticks = walk_ticks
         self.task = WalkTask(settings, walk_ticks)
-        self.learner = make_learner(
+        self.learner = make(
             settings, self.task.problem, np.random.default_rng(learner_stream(seed))
         )
         self._learning = LearningWalk(self.task, self.learner)

@@ -25,6 +25,7 @@ from learner_node.checkpoint import (
     taking_over,
     write_checkpoint,
 )
+from learner_node.methods import MakeLearner, make_learner
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
@@ -39,6 +40,7 @@ class _Spent(msgspec.Struct):
     walked_ticks: WalkedTicks = msgspec.field(default_factory=WalkedTicks)
     cpu_s: float = 0.0
     versions: dict[str, Annotated[str, msgspec.Meta(pattern=r"^[\w.+!-]{0,50}\Z")]] = {}
+    notes: dict[str, Any] = {}
 
 
 class TrainingRun:
@@ -49,6 +51,7 @@ class TrainingRun:
         settings: RunSettings,
         seed: int,
         replay_bytes: int = DEFAULT_MEMORY_BYTES,
+        make: MakeLearner = make_learner,
     ) -> None:
         """Start from nothing.
 
@@ -58,6 +61,7 @@ class TrainingRun:
                 own.
             replay_bytes: memory for the replay of walks, 0 to compute them all. Walks
                 with random disturbances are never replayed.
+            make: who learns; by default whom the settings name.
         """
         self.settings = settings
         self.seed = seed
@@ -73,7 +77,11 @@ class TrainingRun:
             if self.replay_off is None
             else Walker(settings, self._robot_rng)
         )
-        self.session = LearningSession(settings.learner, self.walker.walk_ticks, seed)
+        self.session = LearningSession(
+            settings.learner, self.walker.walk_ticks, seed, make
+        )
+        self.notes: dict[str, Any] = {}
+        """What the run's owner keeps with it, through checkpoints; anything of JSON."""
         self.cpu_s = 0.0
         self.written_by = _versions()
         """Package versions that wrote the checkpoint gone on from."""
@@ -174,16 +182,23 @@ class TrainingRun:
             "cpu_s": self.cpu_s,
             "walked_ticks": vars(self.walker.ticks),
             "versions": _versions(),
+            "notes": self.notes,
         }
         write_checkpoint(path, header, self.session.arrays())
 
     @classmethod
-    def load(cls, path: Path, replay_bytes: int = DEFAULT_MEMORY_BYTES) -> TrainingRun:
+    def load(
+        cls,
+        path: Path,
+        replay_bytes: int = DEFAULT_MEMORY_BYTES,
+        make: MakeLearner = make_learner,
+    ) -> TrainingRun:
         """Return the run of a checkpoint, ready for its next episode.
 
         Args:
             path: what `save` wrote.
             replay_bytes: memory for the replay of walks, 0 to compute them all.
+            make: who has learned; by default whom the settings name.
 
         Raises:
             CheckpointError: the file is no usable checkpoint.
@@ -193,7 +208,7 @@ class TrainingRun:
         try:
             with taking_over(path):
                 settings = from_mapping(RunSettings, header["settings"])
-                run = cls(settings, header["seed"], replay_bytes)
+                run = cls(settings, header["seed"], replay_bytes, make)
                 run.session.restore(header, arrays)
                 # A learner on ROS does not know the robot's generator, nor what was
                 # computed and how long that took.
@@ -201,7 +216,7 @@ class TrainingRun:
                     run._robot_rng.bit_generator.state = header["robot_rng"]
                 spent = msgspec.convert(header, _Spent)
                 run.walker.ticks, run.cpu_s = spent.walked_ticks, spent.cpu_s
-                run.written_by = spent.versions
+                run.written_by, run.notes = spent.versions, spent.notes
         except CheckpointError:
             if run is not None:
                 run.close()
