@@ -1,7 +1,7 @@
 """Who learns the walk in the laboratory: XoL and its rivals behind one face.
 
-A contestant walks one learning episode after the other, on the same plant, with the same
-states, actions, rewards and schedule, and counts its own milestones:
+A contestant walks one learning episode after the other, on the same plant, with the
+same states, actions, rewards and schedule, and counts its own milestones:
 
     schedule    episodes when the schedule's last subtask was passed (Section 5.1)
     greedy      episodes when a frozen greedy walk of the whole walk first succeeded
@@ -37,10 +37,13 @@ class UnknownContestantError(LookupError):
 class Contestant(Protocol):
     """Learns the walk, episode by episode."""
 
-    ticks: WalkedTicks
-    """Where the control ticks of all walks came from."""
-    cpu_s: float
-    """Processor time of all episodes."""
+    @property
+    def ticks(self) -> WalkedTicks:
+        """Where the control ticks of all walks came from."""
+
+    @property
+    def cpu_s(self) -> float:
+        """Processor time of all episodes."""
 
     @property
     def episodes(self) -> int:
