@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -93,6 +94,7 @@ class Entry(Generic[AnyOptions]):
     """As it stands in tables and figures."""
 
 
+@cache
 def entry(name: str) -> Entry[Any]:
     """Return a contestant by its name.
 
