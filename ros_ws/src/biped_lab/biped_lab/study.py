@@ -13,7 +13,7 @@ A study is a YAML file, `studies/*.yaml` or one of a user's own:
                           or of one that the axes have made
     baseline              the arm that others are compared with
     reduced               seeds, most_episodes and arms of a smaller study
-    runs_of               another study's runs, seen under another question
+    like                  another study: what does not stand here is as there
 """
 
 from __future__ import annotations
@@ -246,9 +246,9 @@ def _read(name_or_file: str) -> tuple[str, dict[str, Any]]:
         raise StudyError(f"study {name_or_file}: is not YAML: {error}") from None
     if not isinstance(values, dict):
         raise StudyError(f"study {name_or_file}: must hold keys")
-    if "runs_of" in values:
-        _, runs = _read(str(values.pop("runs_of")))
-        values = {**runs, **values}
+    if "like" in values:
+        _, other = _read(str(values.pop("like")))
+        values = {**other, **values}
     return name, values
 
 
