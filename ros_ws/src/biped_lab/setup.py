@@ -10,4 +10,20 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
+    package_data={NAME: ["studies/*.yaml"]},
+    entry_points={
+        "biped.verbs": ["lab = biped_lab.verbs.lab:add_parser"],
+        "biped.lab_verbs": [
+            "run = biped_lab.verbs.run:add_parser",
+            "status = biped_lab.verbs.status:add_parser",
+        ],
+        "biped.contestants": [
+            "by_settings = biped_lab.learner_contestant:BY_SETTING",
+            "episodic_ps = biped_lab.rivals.episodic_ps:ENTRY",
+            "online_ps = biped_lab.rivals.online_ps:ENTRY",
+            "parp = biped_lab.rivals.parp:ENTRY",
+            "random = biped_lab.rivals.random_choice:ENTRY",
+            "sarsa_lambda = biped_lab.rivals.sarsa_lambda:ENTRY",
+        ],
+    },
 )
