@@ -56,9 +56,9 @@ def share_at_goal(finished: FinishedRuns) -> Figure:
         if len(censored):
             axes.plot(
                 censored, shares, "|", color=colour[arm], markersize=9.0,
-                markeredgewidth=1.4, gid="censored", clip_on=False,
+                markeredgewidth=1.4, label="_censored", clip_on=False,
             )  # fmt: skip
-        axes.set_ylim(0.0, 1.02)
+        axes.set_ylim(-0.03, 1.03)
         axes.set_xlim(left=0.0)
     return figure
 

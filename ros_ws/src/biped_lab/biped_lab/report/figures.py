@@ -111,11 +111,12 @@ def _bars_caption(finished: FinishedRuns) -> str:
 
 def _interval(finished: FinishedRuns) -> str:
     few = [arm for arm in finished.arms if len(finished.of(arm)) < FEWEST_RUNS]
+    if len(few) == len(finished.arms):
+        return f"No intervals: no arm has {FEWEST_RUNS} runs yet."
     text = "Whiskers: 95 % bootstrap interval over seeds"
-    if not few:
-        return f"{text}."
-    whose = "any arm" if len(few) == len(finished.arms) else ", ".join(few)
-    return f"{text}; not of {whose}, with fewer than {FEWEST_RUNS} runs."
+    if few:
+        text += f"; none where there are fewer than {FEWEST_RUNS} runs"
+    return f"{text}."
 
 
 def _left_out(finished: FinishedRuns) -> str:
@@ -215,13 +216,18 @@ def _replay(finished: FinishedRuns) -> ReportFigure:
             "All runs were interrupted, and what they computed depends on when.",
             None,
         )
+    interrupted = (
+        f"{left_out} interrupted runs are left out, since a replay's memory is lost "
+        "with an interruption."
+        if left_out
+        else "No run was interrupted."
+    )
     return ReportFigure(
         "replay",
         title,
         "A walk, or its beginning, that was walked before is not computed again but "
-        "replayed bit for bit; the more states are fixed, the more often. Each mark is "
-        f"a run. {left_out} interrupted runs are left out, since a replay's memory is "
-        "lost with an interruption.",
+        "replayed bit for bit, which greedy actions in fixed states make likely. Each "
+        f"mark is a run. {interrupted}",
         draw_replay(finished),
     )
 
@@ -236,9 +242,10 @@ def _maps(finished: FinishedRuns) -> ReportFigure:
         "The run in the middle of each arm, by its episodes; states at the centre of "
         "their basis function, the waist relative to the support foot as seen from "
         "above, x ahead and y to the left. Other inputs are not seen, so that states "
-        "lie upon each other. Visits: episodes in which a state was met, as its memory "
-        "counts them, which halves old counts. Corrections: dx and dy of the greedy "
-        "action, drawn two and a half times too long."
+        "lie upon each other. Visits: how often a sub-rule of the state was "
+        "chosen, each at most once an episode, as the memory counts, which halves old "
+        "counts. Corrections: dx and dy of the greedy "
+        "action, drawn twice as long as they are."
     )
     left_out = f" Not shown: {' '.join(missing)}" if missing else ""
     return ReportFigure("maps", title, caption + left_out, draw_maps(maps))

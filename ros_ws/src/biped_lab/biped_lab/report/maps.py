@@ -37,8 +37,9 @@ from learner_node.xol.selection import choose_greedy
 _WAIST = [INPUT_NAMES.index(name) - N_DISCRETE for name in ("waist_x", "waist_y")]
 _PREFIX = "memory/"
 _VISITS = LinearSegmentedColormap.from_list("visits", ("#cfe5f3", SKY, BLUE, "#00263d"))
-_ROW_IN = 1.35
-_ARROW_SCALE = 0.4  # an arrow of 0.02 m is as long as 0.05 m of the plane
+_ROW_IN = 1.45
+_ARROW_SCALE = 0.5  # an arrow of 0.02 m is as long as 0.04 m of the plane
+_MARGIN_M = 0.05
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class LearnedMap:
     waist_m: NDArray[np.float64]
     """(n, 2) centres, relative to the support foot."""
     visits: NDArray[np.int64]
-    """(n,) episodes, as the memory counts them."""
+    """(n,) choices of a sub-rule of dx, each once an episode, as the memory counts."""
     correction_m: NDArray[np.float64]
     """(n, 2) of the greedy action."""
     fixed: NDArray[np.bool_]
@@ -149,20 +150,22 @@ def draw_maps(maps: dict[tuple[str, int], LearnedMap]) -> Figure:
         )  # fmt: skip
         _draw_kinds(axes[2], each)
         axes[0].set_ylabel("x [m]")
-        axes[0].set_title(f"{arm}, seed {seed}")
+        axes[0].set_title(f"{arm}, seed {seed}: visits")
         for panel in axes:
             panel.set_aspect("equal")
-    grid[0, 0].margins(0.1)
-    grid[0, 0].invert_xaxis()
+    centres = np.concatenate([each.waist_m for each in maps.values()])
+    (x_low, y_low), (x_high, y_high) = centres.min(axis=0), centres.max(axis=0)
+    grid[0, 0].set_xlim(y_high + _MARGIN_M, y_low - _MARGIN_M)
+    grid[0, 0].set_ylim(x_low - _MARGIN_M, x_high + _MARGIN_M)
     for panel in grid[-1]:
         panel.set_xlabel("y [m]")
     assert dots is not None
     scale = figure.colorbar(
-        dots, ax=list(grid[:, 0]), location="bottom", aspect=30, label="visits"
+        dots, ax=grid, location="bottom", shrink=0.3, anchor=(0.0, 1.0), aspect=25
     )
     ticks = [n for n in (1, 10, 100, 1000, 10_000) if n <= most]
     scale.set_ticks(list(np.log10(ticks)), labels=[str(n) for n in ticks])
-    scale.set_label("visits [episodes]")
+    scale.set_label("visits [choices]")
     grid[0, 1].set_title("corrections", fontweight="normal")
     grid[0, 2].set_title("kinds of states", fontweight="normal")
     kinds = [Line2D([], [], label=name, **style) for name, style in _KINDS.items()]

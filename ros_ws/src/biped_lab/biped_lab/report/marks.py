@@ -79,7 +79,7 @@ def dots(
                 markerfacecolor=face,
                 markeredgecolor=INK,
                 markeredgewidth=0.7,
-                gid="runs" if face == colour else "censored",
+                label="_run" if face == colour else "_censored",
             )
 
 
@@ -94,7 +94,7 @@ def median_mark(
         color=INK,
         linewidth=1.4,
         dashes=(1.5, 1.0),
-        gid="median",
+        label="_median",
     )
 
 

@@ -21,6 +21,8 @@ BLUE, VERMILLION, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 ORANGE, SKY, YELLOW = "#e69f00", "#56b4e9", "#f0e442"
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, YELLOW)
 """Black, the eighth, is the ink: it is kept for what others are compared with."""
+_OF_THE_PAGE = {INK: "currentColor", PAPER: "var(--paper)", BLUE: "var(--blue)"}
+"""Colours that a page may change: in the dark, ours would not be seen."""
 WIDTH_IN = 7.2
 _DPI = 160
 
@@ -83,7 +85,7 @@ def svg(figure: Figure) -> bytes:
 
 
 def inline_svg(drawing: bytes, name: str, title: str) -> str:
-    """Return the drawing as an element of a page, in the page's ink and paper.
+    """Return the drawing as an element of a page, in the page's own colours.
 
     Args:
         drawing: what `svg` returned.
@@ -95,5 +97,6 @@ def inline_svg(drawing: bytes, name: str, title: str) -> str:
     text = re.sub(r'\bid="', f'id="{name}-', text)
     text = text.replace('href="#', f'href="#{name}-').replace("url(#", f"url(#{name}-")
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
-    text = text.replace(INK, "currentColor").replace(PAPER, "var(--paper)")
+    for colour, name_of_page in _OF_THE_PAGE.items():
+        text = text.replace(colour, name_of_page)
     return text.replace("<svg ", f'<svg role="img" aria-label="{title}" ', 1)

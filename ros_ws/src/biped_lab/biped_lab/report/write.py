@@ -113,7 +113,10 @@ def _findings_note(finished: FinishedRuns) -> str:
     if not rivals:
         return "Means restricted to the bound; time in simulated seconds."
     whom = rivals.pop() if len(rivals) == 1 else "the same arm without fixed mode"
-    return f"Time and episodes: mean restricted to the bound, over that of {whom}."
+    note = f"Time and episodes: mean restricted to the bound, over that of {whom}."
+    if finished.runs["reached"].all():
+        return note
+    return f"{note} Where not all runs are at the goal, the true mean is larger."
 
 
 def _write_figures(finished: FinishedRuns, folder: Path) -> list[_Shown]:
