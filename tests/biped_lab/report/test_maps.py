@@ -39,7 +39,7 @@ def test_a_map_has_the_states_of_the_memory(
     assert found.fixed.sum() == figures["fixed_states"] > 0
     assert found.penalty.sum() == figures["penalty_states"]
     alternatives = run.settings.learner.action.alternatives
-    assert 1 <= found.visits.min()
+    assert found.visits.min() >= 1
     assert found.visits.max() <= EPISODES * alternatives
 
 
@@ -81,9 +81,10 @@ def test_memories_that_are_absent_or_damaged_are_told(
     content = learned[1].read_bytes()
     (results.run_folder("K=1-11") / MEMORY_FILE).write_bytes(content)
     (results.run_folder("K=3-11") / MEMORY_FILE).write_bytes(content[:1000])
-    maps, missing = learned_maps(finished_runs(results))
+    finished = finished_runs(results)
+    maps, missing = learned_maps(finished)
     assert list(maps) == [("K = 1", 11)]
-    assert len(draw_maps(maps).axes) == 3 + 1
+    assert len(draw_maps(finished, maps).axes) == 3 + 1
     damaged, absent = missing
     assert "K = 3, seed 11" in damaged
     assert absent == "K = none, seed 11: its memory is not there."

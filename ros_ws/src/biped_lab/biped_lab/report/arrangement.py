@@ -39,6 +39,12 @@ class Arrangement:
         """Whether a place has several bars, one per series."""
         return any(self.series.values())
 
+    def title(self, arm: str) -> str:
+        """Return what the arm is called in figures, shorter than its name."""
+        if not self.series[arm]:
+            return arm
+        return f"{self.axis} = {self.places[arm]}, {self.series[arm]}"
+
     def in_series(self, series: str) -> list[str]:
         """Return the arms of a series, in order."""
         return [arm for arm, name in self.series.items() if name == series]

@@ -248,4 +248,4 @@ def _maps(finished: FinishedRuns) -> ReportFigure:
         "action, drawn twice as long as they are."
     )
     left_out = f" Not shown: {' '.join(missing)}" if missing else ""
-    return ReportFigure("maps", title, caption + left_out, draw_maps(maps))
+    return ReportFigure("maps", title, caption + left_out, draw_maps(finished, maps))

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from biped_bringup.run_settings import RunSettings
 from biped_common.settings import from_mapping
 from biped_lab.report.finished import EPISODES, FinishedRuns
+from biped_lab.report.marks import wrapped
 from biped_lab.report.theme import (
     BLUE,
     GREEN,
@@ -127,7 +128,9 @@ def learned_maps(
     return maps, missing
 
 
-def draw_maps(maps: dict[tuple[str, int], LearnedMap]) -> Figure:
+def draw_maps(
+    finished: FinishedRuns, maps: dict[tuple[str, int], LearnedMap]
+) -> Figure:
     """Draw a row for each map: visits, corrections, and kinds of states.
 
     Seen from above, the robot walking up the page: y grows to the left.
@@ -150,7 +153,8 @@ def draw_maps(maps: dict[tuple[str, int], LearnedMap]) -> Figure:
         )  # fmt: skip
         _draw_kinds(axes[2], each)
         axes[0].set_ylabel("x [m]")
-        axes[0].set_title(f"{arm}, seed {seed}: visits")
+        title = f"{finished.arrangement.title(arm)}, seed {seed}"
+        axes[0].set_title(wrapped(title, 28))
         for panel in axes:
             panel.set_aspect("equal")
     centres = np.concatenate([each.waist_m for each in maps.values()])

@@ -122,7 +122,7 @@ def mark_legend(censored: bool) -> list[Artist]:
 
 def label_places(axes: Axes, finished: FinishedRuns, places: Sequence[str]) -> None:
     """Name the places along the axis of the arms."""
-    axes.set_xticks(range(len(places)), [_wrapped(place) for place in places])
+    axes.set_xticks(range(len(places)), [wrapped(place) for place in places])
     axes.tick_params(axis="x", length=0.0)
     label = _AXES.get(finished.arrangement.axis, finished.arrangement.axis)
     without = "; none: no fixed mode" if NO_FIXED_MODE in places else ""
@@ -149,7 +149,8 @@ def arm_panels(
     for unused in grid.flat[len(arms) :]:
         unused.set_visible(False)
     for i, (arm, axes) in enumerate(zip(arms, grid.flat, strict=False)):
-        axes.set_title(_wrapped(arm, 24), color=finished.arrangement.colours[arm])
+        title = wrapped(finished.arrangement.title(arm), 20)
+        axes.set_title(title, color=finished.arrangement.colours[arm])
         if i + columns >= len(arms):
             axes.tick_params(labelbottom=True)
     figure.supxlabel(x_label, fontsize=9.0)
@@ -167,7 +168,8 @@ def _places(n: int) -> NDArray[np.float64]:
     return np.asarray((0.5 + 0.6180339887 * np.arange(n)) % 1.0)
 
 
-def _wrapped(text: str, width: int = 12) -> str:
+def wrapped(text: str, width: int = 12) -> str:
+    """Return a text in lines of about a width, broken between words."""
     lines = [""]
     for word in text.split():
         if lines[-1] and len(lines[-1]) + len(word) >= width:

@@ -50,10 +50,11 @@ def draw_end_causes(finished: FinishedRuns) -> Figure:
     figure = new_figure(0.9 + 0.32 * len(shares))
     axes = figure.subplots()
     left = np.zeros(len(shares))
+    titles = [finished.arrangement.title(arm) for arm in finished.arms]
     for cause, share in shares.items():
         colour = _CAUSE_COLOURS.get(str(cause), GREY)
         drawn = axes.barh(
-            shares.index, share, left=left, color=colour, alpha=0.75, height=0.7,
+            titles, share, left=left, color=colour, alpha=0.75, height=0.7,
             label=str(cause).replace("_", " "),
         )  # fmt: skip
         labels = [f"{100 * s:.0f} %" if s >= _LABELLED_SHARE else "" for s in share]
@@ -93,7 +94,7 @@ def draw_replay(finished: FinishedRuns) -> Figure:
             markeredgewidth=0.5,
             markersize=5.0,
             alpha=0.85,
-            label=arm,
+            label=finished.arrangement.title(arm),
         )
     walked = runs["simulated_s"] + runs["evaluation_s"]
     ends = np.array([0.8 * walked.min(), 1.25 * walked.max()])
