@@ -57,7 +57,7 @@ def compared(finished: FinishedRuns, rng: np.random.Generator) -> pd.DataFrame:
     for arm in finished.arms:
         rival = rivals[arm] if rivals[arm] in finished.arms else None
         both = runs[runs["arm"].isin([arm, rival])]
-        table = compare(both, rival, rng).set_index("arm")
+        table = compare(both, rival, finished.bound, rng).set_index("arm")
         rows.append(table.loc[[arm]])
     found = pd.concat(rows)
     found["p_holm"] = holm(found["p_wilcoxon"].to_list())

@@ -154,7 +154,7 @@ def draw_maps(
         _draw_kinds(axes[2], each)
         axes[0].set_ylabel("x [m]")
         title = f"{finished.arrangement.title(arm)}, seed {seed}"
-        axes[0].set_title(wrapped(title, 28))
+        axes[0].set_title(wrapped(title, 32))
         for panel in axes:
             panel.set_aspect("equal")
     centres = np.concatenate([each.waist_m for each in maps.values()])
