@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import jinja2
 import numpy as np
-from markupsafe import Markup
 
 from biped_common.atomic_file import atomic_file
 from biped_common.command_line import writable_folder
@@ -42,7 +41,8 @@ class _Shown(NamedTuple):
     name: str
     title: str
     caption: str
-    drawing: Markup
+    drawing: str
+    """SVG of our own, in which all names are outlines; empty where there is none."""
 
 
 def write_report(results: StudyResults) -> Path:
@@ -124,14 +124,13 @@ def _write_figures(finished: FinishedRuns, folder: Path) -> list[_Shown]:
     shown, written = [], set()
     with theme():
         for name, title, caption, figure in figures(finished, _rng()):
-            drawing = Markup()
+            drawing = ""
             if figure is not None:
                 drawn = svg(figure)
                 _write(folder / f"{name}.svg", drawn)
                 _write(folder / f"{name}.png", png(figure))
                 written |= {f"{name}.svg", f"{name}.png"}
-                # A drawing of our own; names in it are outlines.
-                drawing = Markup(inline_svg(drawn, name, title))
+                drawing = inline_svg(drawn, name, title)
             shown.append(_Shown(name, title, caption, drawing))
     for file in folder.iterdir():
         if file.suffix in (".svg", ".png") and file.name not in written:
