@@ -1,0 +1,162 @@
+"""How the arms learn: walked time, share of runs at the goal, share of fixed states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from biped_common.timing import seconds
+from biped_lab.report.finished import EPISODES, FinishedRuns
+from biped_lab.report.marks import arm_panels, reached
+from biped_lab.report.theme import GREY
+from biped_lab.statistics.censored import CensoredTimes, reached_curve
+
+RUNNING_MEAN_EPISODES = 10
+_PROGRESS = np.linspace(0.0, 1.0, 101)
+
+Curves = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+"""x (n,) and values (runs, n) by arm."""
+
+
+def learning_curves(finished: FinishedRuns) -> Figure:
+    """Draw the walked time over episodes: median and quartiles over the runs."""
+    curves = _over_episodes(finished, finished.arms, _walked_s)
+    figure = _quartile_panels(finished, curves, "walked time [s]", "episode")
+    longest = max(table["target_ticks"].max() for table in finished.tables.values())
+    for axes in figure.axes:
+        axes.axhline(seconds(int(longest)), color=GREY, linewidth=0.8, linestyle=":")
+        axes.set_ylim(bottom=0.0)
+    return figure
+
+
+def share_at_goal(finished: FinishedRuns) -> Figure:
+    """Draw the share of runs at the goal: Kaplan and Meier, with 95 % intervals."""
+    curves = {arm: reached_curve(_times(finished.of(arm))) for arm in finished.arms}
+    figure, panels = arm_panels(
+        finished, finished.arms, "share of runs at the goal [ ]", "episode"
+    )
+    for arm, axes in panels:
+        rival, colour = finished.arrangement.rivals[arm], finished.arrangement.colours
+        if rival in curves:
+            _draw_steps(axes, curves[rival], GREY)
+        curve = curves[arm]
+        axes.fill_between(
+            curve["episode"], curve["low"], curve["high"], step="post",
+            color=colour[arm], alpha=0.2, linewidth=0.0,
+        )  # fmt: skip
+        _draw_steps(axes, curve, colour[arm])
+        times = _times(finished.of(arm))
+        censored = times.time[~times.reached]
+        shares = [curve["reached"][curve["episode"] <= t].iloc[-1] for t in censored]
+        if len(censored):
+            axes.plot(
+                censored, shares, "|", color=colour[arm], markersize=9.0,
+                markeredgewidth=1.4, label="_censored", clip_on=False,
+            )  # fmt: skip
+        axes.set_ylim(-0.03, 1.03)
+        axes.set_xlim(left=0.0)
+    return figure
+
+
+def fixed_share(finished: FinishedRuns) -> Figure:
+    """Draw the share of fixed states over episodes, of the arms that fix any."""
+    curves = _over_episodes(finished, finished.fixing_arms, _fixed_share)
+    figure = _quartile_panels(finished, curves, "fixed states / NB [ ]", "episode")
+    figure.axes[0].set_ylim(0.0, 1.0)
+    return figure
+
+
+def fixed_share_by_progress(finished: FinishedRuns) -> Figure:
+    """Draw the same over the share of its episodes that a run has walked."""
+    curves = {
+        arm: (
+            _PROGRESS,
+            np.array(
+                [
+                    np.interp(_PROGRESS, *_by_progress(t))
+                    for t in finished.tables_of(arm)
+                ]
+            ),
+        )
+        for arm in finished.fixing_arms
+    }
+    figure = _quartile_panels(
+        finished, curves, "fixed states / NB [ ]", "share of the run's episodes [ ]"
+    )
+    figure.axes[0].set_ylim(0.0, 1.0)
+    figure.axes[0].set_xlim(0.0, 1.0)
+    return figure
+
+
+def _over_episodes(
+    finished: FinishedRuns,
+    arms: Sequence[str],
+    column: Callable[[pd.DataFrame], NDArray[np.float64]],
+) -> Curves:
+    """Return a column of all runs; a run that has ended stays at its last value."""
+    longest = max(len(table) for table in finished.tables.values())
+    return {
+        arm: (
+            np.arange(1, longest + 1, dtype=np.float64),
+            np.array(
+                [
+                    np.pad(column(table), (0, longest - len(table)), mode="edge")
+                    for table in finished.tables_of(arm)
+                ]
+            ),
+        )
+        for arm in arms
+    }
+
+
+def _quartile_panels(
+    finished: FinishedRuns, curves: Curves, y_label: str, x_label: str
+) -> Figure:
+    figure, panels = arm_panels(finished, list(curves), y_label, x_label)
+    for arm, axes in panels:
+        rival = finished.arrangement.rivals[arm]
+        if rival in curves:
+            x, values = curves[rival]
+            axes.plot(x, np.median(values, axis=0), color=GREY, linewidth=1.1)
+        _draw_quartiles(axes, *curves[arm], finished.arrangement.colours[arm])
+        axes.set_xlim(left=0.0)
+    return figure
+
+
+def _draw_quartiles(
+    axes: Axes, x: NDArray[np.float64], values: NDArray[np.float64], colour: str
+) -> None:
+    low, median, high = np.quantile(values, (0.25, 0.5, 0.75), axis=0)
+    axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0.0)
+    axes.plot(x, median, color=colour)
+
+
+def _times(runs: pd.DataFrame) -> CensoredTimes:
+    return CensoredTimes(runs[EPISODES].to_numpy(dtype=np.float64), reached(runs))
+
+
+def _draw_steps(axes: Axes, curve: pd.DataFrame, colour: str) -> None:
+    axes.step(curve["episode"], curve["reached"], where="post", color=colour)
+
+
+def _walked_s(table: pd.DataFrame) -> NDArray[np.float64]:
+    """Return the running mean of the walked time over the last episodes [s]."""
+    walked = table["control_ticks"].map(seconds)
+    mean = walked.rolling(RUNNING_MEAN_EPISODES, min_periods=1).mean()
+    return np.asarray(mean, dtype=np.float64)
+
+
+def _fixed_share(table: pd.DataFrame) -> NDArray[np.float64]:
+    share = table["fixed_states"] / table["basis_states"]
+    return np.asarray(share.fillna(0.0), dtype=np.float64)
+
+
+def _by_progress(
+    table: pd.DataFrame,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    return np.arange(1, len(table) + 1) / len(table), _fixed_share(table)

@@ -1,0 +1,46 @@
+"""How the runs of a study were made, by their own word: code, packages, settings."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from biped_lab.results import StudyResults
+from biped_lab.run_folder import RunError, read_spec
+
+
+def provenance(results: StudyResults) -> list[tuple[str, str]]:
+    """Return what there is to say, each with its name."""
+    study = results.study
+    name = study.name.removesuffix("-reduced")
+    reduced = " --reduced" if study.reduced else ""
+    codes: Counter[str] = Counter()
+    packages: Counter[str] = Counter()
+    silent = 0
+    for address in results.runs["address"]:
+        try:
+            spec = read_spec(results.run_folder(address))
+        except RunError:
+            silent += 1
+            continue
+        codes[spec.code] += 1
+        versions = sorted(spec.packages.items())
+        packages[", ".join(f"{name} {version}" for name, version in versions)] += 1
+    found = [
+        ("runs", f"biped lab run {name}{reduced}"),
+        ("report", f"biped lab report DIR {study.name}"),
+        ("code", _counted(codes)),
+        ("packages", _counted(packages)),
+    ]
+    if silent:
+        found.append(("not known", f"of {silent} runs, whose run.json is not there"))
+    for arm in study.arms:
+        changes = ", ".join(f"{key} = {value}" for key, value in arm.settings.items())
+        found.append((arm.name, changes or "the preset paper as it is"))
+    return [(name, text) for name, text in found if text]
+
+
+def _counted(found: Counter[str]) -> str:
+    """Return what all have in common, or each with its number of runs."""
+    if len(found) < 2:
+        return "".join(found)
+    return "; ".join(f"{text} ({n} runs)" for text, n in sorted(found.items()))

@@ -1,0 +1,156 @@
+"""The tables of a study: what its arms achieved, what they cost, and every run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from biped_lab.report.estimates import compared, ratio_of_means, restricted_mean
+from biped_lab.report.finished import EPISODES, FIXED_SHARE, SIMULATED, FinishedRuns
+from biped_lab.statistics.censored import Estimate
+
+NOTHING = "–"
+
+
+@dataclass(frozen=True)
+class Table:
+    """Text in rows."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    def markdown(self) -> str:
+        """Return the table in Markdown."""
+        marks = ("---", *["---:"] * (len(self.head) - 1))
+        lines = (self.head, marks, *self.rows)
+        escaped = ((cell.replace("|", r"\|") for cell in line) for line in lines)
+        return "".join(f"| {' | '.join(cells)} |\n" for cells in escaped)
+
+
+def findings_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
+    """Return in short what was found, to be read beside what the paper says."""
+    rivals = [finished.arrangement.rivals[arm] for arm in finished.arms]
+    relative = any(rival in finished.arms for rival in rivals)
+    estimate = ratio_of_means if relative else restricted_mean
+    form, by = ("{:.2f}", "relative") if relative else ("{:.0f}", "mean")
+    rows = []
+    for arm in finished.arms:
+        goal = finished.of(arm)["reached"]
+        rows.append(
+            (
+                arm,
+                f"{int(goal.sum())} of {len(goal)}",
+                _text(estimate(finished, arm, SIMULATED, rng), form),
+                _text(estimate(finished, arm, EPISODES, rng), form),
+                _text(restricted_mean(finished, arm, FIXED_SHARE, rng), "{:.2f}"),
+            )
+        )
+    head = ("arm", "at the goal", f"time, {by}", f"episodes, {by}", "fixed / NB")
+    return Table(head, tuple(rows))
+
+
+def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
+    """Return what the arms needed, and how they compare with their rivals.
+
+    Nothing in it depends on the machine: the same data give the same bytes.
+    """
+    statistics = compared(finished, rng)
+    rows = []
+    for arm in finished.arms:
+        found = statistics.loc[arm]
+        mean_episodes = restricted_mean(finished, arm, EPISODES, rng)
+        mean_s = restricted_mean(finished, arm, SIMULATED, rng)
+        share = restricted_mean(finished, arm, FIXED_SHARE, rng)
+        rows.append(
+            (
+                arm,
+                str(int(found["n"])),
+                str(int(finished.of(arm)["reached"].sum())),
+                _text(_of(found, "median"), "{:.0f}"),
+                _text(mean_episodes, "{:.0f}"),
+                _text(mean_s, "{:.0f}"),
+                finished.arrangement.rivals[arm] or NOTHING,
+                _text(_of(found, "ratio"), "{:.2f}"),
+                _text(_of(found, "improvement"), "{:.2f}"),
+                _number(found["p_holm"], "{:.2g}"),
+                _text(share, "{:.2f}"),
+            )
+        )
+    head = (
+        "arm", "runs", "at the goal", "median [episodes]", "mean [episodes]",
+        "mean [s simulated]", "compared with", "ratio of medians", "P(faster)",
+        "p (Holm)", "fixed / NB",
+    )  # fmt: skip
+    return Table(head, tuple(rows))
+
+
+def cost_table(finished: FinishedRuns) -> Table:
+    """Return what the runs took; it depends on machine and interruptions."""
+    rows = []
+    for arm in finished.arms:
+        runs = finished.of(arm)
+        walked = runs["simulated_s"] + runs["evaluation_s"]
+        once = runs["sittings"] == 1
+        computed = runs["computed_s"][once].sum() / max(walked[once].sum(), 1e-9)
+        rows.append(
+            (
+                arm,
+                str(len(runs)),
+                str(int((~once).sum())),
+                f"{walked.mean():.0f}",
+                f"{100 * computed:.0f} %" if once.any() else NOTHING,
+                f"{runs['cpu_s'].median():.1f}",
+                f"{runs['cpu_s'].sum():.0f}",
+            )
+        )
+    head = (
+        "arm", "runs", "interrupted", "walked a run [s simulated]",
+        "computed of it", "CPU a run, median [s]", "CPU in all [s]",
+    )  # fmt: skip
+    return Table(head, tuple(rows))
+
+
+def runs_table(finished: FinishedRuns) -> Table:
+    """Return every run, those without a result too."""
+    rows = []
+    for run in finished.results.runs.itertuples():
+        done = run.state == "finished"
+        if not done:
+            result = f"unfinished, {run.episodes} episodes so far"
+        elif run.reached:
+            result = f"goal after {run.time:.0f} episodes"
+        else:
+            result = f"stopped at {run.time:.0f} episodes"
+        rows.append(
+            (
+                str(run.arm),
+                str(run.seed),
+                str(run.address),
+                result,
+                _number(run.simulated_s, "{:.1f}"),
+                str(run.trajectory_sha256)[:12] if done else NOTHING,
+            )
+        )
+    head = ("arm", "seed", "address", "result", "simulated [s]", "trajectory")
+    return Table(head, tuple(rows))
+
+
+def _of(row: pd.Series, name: str) -> Estimate:
+    return Estimate(*(float(row[name + end]) for end in ("", "_low", "_high")))
+
+
+def _text(estimate: Estimate, form: str) -> str:
+    """Return a figure with its interval, as far as they are there."""
+    if math.isnan(estimate.low) or math.isnan(estimate.high):
+        return _number(estimate.value, form)
+    low, high = _number(estimate.low, form), _number(estimate.high, form)
+    return f"{_number(estimate.value, form)} [{low}, {high}]"
+
+
+def _number(value: float, form: str) -> str:
+    if math.isnan(value):
+        return NOTHING
+    return "∞" if math.isinf(value) else form.format(value)
