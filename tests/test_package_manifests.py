@@ -19,14 +19,20 @@ OWN = {folder.name for folder in FOLDERS}
 ROSDEP_KEYS = {
     "argcomplete": "python3-argcomplete",
     "gymnasium": "python3-gymnasium-pip",
+    "jinja2": "python3-jinja2",
     "matplotlib": "python3-matplotlib",
     "numpy": "python3-numpy",
+    "pandas": "python3-pandas",
     "pybullet": "python3-pybullet-pip",
     "rich": "python3-rich",
+    "scipy": "python3-scipy",
     "yaml": "python3-yaml",
 }
 """Of what is imported from neither ROS nor the standard library."""
 FROM_PIP = {
+    "cma": "cma",
+    "distributed": "distributed",
+    "lifelines": "lifelines",
     "llvmlite": "llvmlite",
     "lz4": "lz4",
     "mcap": "mcap",
@@ -34,6 +40,9 @@ FROM_PIP = {
     "msgspec": "msgspec",
     "numba": "numba",
     "pyarrow": "pyarrow",
+    "stable_baselines3": "stable-baselines3",
+    "submitit": "submitit",
+    "threadpoolctl": "threadpoolctl",
     "zstandard": "zstandard",
 }
 """Named in a comment of package.xml: rosdep has no key, or none for Jazzy's Ubuntu."""

@@ -10,10 +10,12 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
-    package_data={NAME: ["studies/*.yaml"]},
+    package_data={NAME: ["studies/*.yaml", "report/*.j2"]},
     entry_points={
         "biped.verbs": ["lab = biped_lab.verbs.lab:add_parser"],
         "biped.lab_verbs": [
+            "power = biped_lab.verbs.power:add_parser",
+            "report = biped_lab.verbs.report:add_parser",
             "run = biped_lab.verbs.run:add_parser",
             "status = biped_lab.verbs.status:add_parser",
         ],
