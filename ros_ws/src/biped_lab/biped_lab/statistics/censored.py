@@ -161,7 +161,8 @@ def faster(
     """
     time, other_time = time[..., :, None], other_time[..., None, :]
     tied_but_censored = (time == other_time) & ~other_reached[..., None, :]
-    return reached[..., :, None] & ((time < other_time) | tied_but_censored)
+    known = reached[..., :, None] & ((time < other_time) | tied_but_censored)
+    return np.asarray(known)
 
 
 def scatter(times: CensoredTimes) -> float:

@@ -1,4 +1,4 @@
-"""A study's arms side by side: times to success, and how they differ from a baseline."""
+"""A study's arms side by side, and how they differ from its baseline."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from biped_lab.statistics.censored import (
     scatter,
 )
 from biped_lab.statistics.improvement import probability_of_improvement
+from biped_lab.statistics.median_ratio import ratio_of_medians, resampled
 from biped_lab.statistics.permutation import (
     holm,
     logrank_scores,
@@ -25,11 +26,7 @@ from biped_lab.statistics.permutation import (
     swaps,
     wilcoxon_scores,
 )
-from biped_lab.statistics.resampling import (
-    expected_running_time,
-    ratio_of_medians,
-    resampled,
-)
+from biped_lab.statistics.running_time import expected_running_time
 
 FEWEST_RUNS = 5
 """Of fewer, the scatter is not known well enough for intervals: they are NaN."""
@@ -37,7 +34,10 @@ NOTHING = Estimate(np.nan, np.nan, np.nan)
 
 
 def compare(
-    runs: pd.DataFrame, baseline: str | None, rng: np.random.Generator
+    runs: pd.DataFrame,
+    baseline: str | None,
+    most_episodes: int,
+    rng: np.random.Generator,
 ) -> pd.DataFrame:
     """Return one row per arm, in the order in which the arms come.
 
@@ -49,6 +49,7 @@ def compare(
         runs: one row per run: `arm`, `seed`, `state` ("finished", or it has no result
             yet), `reached` (bool), `time` (episodes to success, or watched without).
         baseline: the arm that the others are compared with; None: no comparison.
+        most_episodes: the study's bound.
         rng: draws permutations and bootstrap samples.
 
     Returns:
@@ -90,7 +91,7 @@ def compare(
     for arm, own in by_arm.items():
         row = {"arm": arm, "n": len(own)}
         row["unfinished"] = int((runs["arm"] == arm).sum()) - len(own)
-        row |= _described(own, np.random.default_rng(draws))
+        row |= _described(own, most_episodes, np.random.default_rng(draws))
         to = own.iloc[:0] if arm == baseline or baseline is None else by_arm[baseline]
         row |= _compared(own, to, np.random.default_rng(draws))
         rows.append(row)
@@ -99,13 +100,15 @@ def compare(
     return table
 
 
-def _described(runs: pd.DataFrame, rng: np.random.Generator) -> dict[str, float]:
+def _described(
+    runs: pd.DataFrame, most_episodes: int, rng: np.random.Generator
+) -> dict[str, float]:
     share = middle = ert = NOTHING
     spread = np.nan
     if len(runs):
         times = _times(runs)
         share, middle, spread = completed(times), median(times), scatter(times)
-        ert = expected_running_time(times, resampled(len(times), rng))
+        ert = expected_running_time(times, most_episodes, rng)
         if len(times) < FEWEST_RUNS:
             middle, ert = _value_only(middle), _value_only(ert)
     return (
@@ -125,10 +128,10 @@ def _compared(
     p = dict.fromkeys(("p_logrank", "p_rmst", "p_wilcoxon", "p_paired"), np.nan)
     if len(runs) and len(baseline):
         arm, other = _times(runs), _times(baseline)
-        weights = resampled(len(arm), rng)
+        draws = resampled(len(arm), rng)
         # Seeds are drawn in pairs, unless some have no partner.
         paired = runs.index.equals(baseline.index)
-        of_both = weights, weights if paired else resampled(len(other), rng)
+        of_both = draws, draws if paired else resampled(len(other), rng)
         ratio = ratio_of_medians(arm, other, of_both)
         improvement = probability_of_improvement(arm, other)
         if min(len(arm), len(other)) < FEWEST_RUNS:
@@ -140,19 +143,19 @@ def _compared(
         restricted = restricted_times(time, reached)
         difference = restricted[: len(arm)].mean() - restricted[len(arm) :].mean()
         scores = wilcoxon_scores(time, reached)
-        p["p_logrank"] = permutation_p(logrank_scores(time, reached), labels)
-        p["p_rmst"] = permutation_p(restricted, labels)
-        p["p_wilcoxon"] = permutation_p(scores, labels)
+        p["p_logrank"] = float(permutation_p(logrank_scores(time, reached), labels))
+        p["p_rmst"] = float(permutation_p(restricted, labels))
+        p["p_wilcoxon"] = float(permutation_p(scores, labels))
         if len(pairs):
             own = scores[: len(arm)][runs.index.get_indexer(pairs)]
             others = scores[len(arm) :][baseline.index.get_indexer(pairs)]
-            p["p_paired"] = permutation_p(own - others, swaps(len(pairs), rng))
+            p["p_paired"] = float(permutation_p(own - others, swaps(len(pairs), rng)))
     return (
         {"pairs": len(pairs)}
         | _columns("ratio", ratio)
         | _columns("improvement", improvement)
         | {"rmst_difference": float(difference)}
-        | {name: float(value) for name, value in p.items()}
+        | p
     )
 
 

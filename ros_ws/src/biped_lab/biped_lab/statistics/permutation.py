@@ -35,8 +35,7 @@ def wilcoxon_scores(time: Floats, reached: Bools) -> Floats:
     Whitney.
     """
     known = faster(time, reached, time, reached)
-    scores: Floats = known.sum(axis=-1) - known.sum(axis=-2).astype(np.float64)
-    return scores
+    return np.asarray(known.sum(axis=-1) - known.sum(axis=-2), np.float64)
 
 
 def restricted_times(time: Floats, reached: Bools) -> Floats:
@@ -46,7 +45,7 @@ def restricted_times(time: Floats, reached: Bools) -> Floats:
     Research Methodology 13 (2013) 152.
     """
     watched = np.where(reached, np.inf, time).min(axis=-1, keepdims=True)
-    return np.minimum(time, watched)
+    return np.asarray(np.minimum(time, watched))
 
 
 def logrank_scores(time: Floats, reached: Bools) -> Floats:
@@ -57,8 +56,7 @@ def logrank_scores(time: Floats, reached: Bools) -> Floats:
     """
     fit = NelsonAalenFitter(nelson_aalen_smoothing=False).fit(time, reached)
     expected = fit.cumulative_hazard_at_times(time).to_numpy()
-    scores: Floats = reached - expected
-    return scores
+    return np.asarray(reached - expected)
 
 
 # -- tests -----------------------------------------------------------------------------

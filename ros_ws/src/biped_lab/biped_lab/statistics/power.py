@@ -21,7 +21,7 @@ from biped_lab.statistics.permutation import (
 LEVEL = 0.05
 POWER = 0.8
 BOUND = 4.0
-"""Where runs are censored, in medians of the faster arm: 1,500 episodes to about 400."""
+"""Where runs are censored, in medians of the faster arm, as 1,500 episodes to 400."""
 SEEDS_AT_MOST = 100
 COMPARISONS_AT_MOST = 50
 _STUDIES = 1_000

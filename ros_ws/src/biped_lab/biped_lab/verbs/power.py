@@ -71,7 +71,9 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print."""
-    print(power_table(options.ratio, options.scatter, options.stuck, options.comparisons))
+    print(
+        power_table(options.ratio, options.scatter, options.stuck, options.comparisons)
+    )
     return DONE
 
 
@@ -82,7 +84,9 @@ def power_table(
 
     The same for the same arguments.
     """
-    scenarios = [[Scenario(ratio, each, stuck) for ratio in ratios] for each in scatters]
+    scenarios = [
+        [Scenario(ratio, each, stuck) for ratio in ratios] for each in scatters
+    ]
     lines = [
         f"Seeds per arm for {POWER:.0%} power at the level of {LEVEL:.0%}, "
         f"{comparisons} comparison{'s' if comparisons > 1 else ''}, {stuck:.0%} stuck, "
