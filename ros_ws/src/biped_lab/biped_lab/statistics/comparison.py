@@ -16,7 +16,6 @@ from biped_lab.statistics.censored import (
     scatter,
 )
 from biped_lab.statistics.improvement import probability_of_improvement
-from biped_lab.statistics.median_ratio import ratio_of_medians, resampled
 from biped_lab.statistics.permutation import (
     holm,
     logrank_scores,
@@ -26,6 +25,7 @@ from biped_lab.statistics.permutation import (
     swaps,
     wilcoxon_scores,
 )
+from biped_lab.statistics.resampling import ratio_of_medians, resampled
 from biped_lab.statistics.running_time import expected_running_time
 
 FEWEST_RUNS = 5
@@ -81,6 +81,12 @@ def compare(
     if len(twice):
         raise StatisticsError(
             f"arm {twice['arm'].iloc[0]!r}: seed {twice['seed'].iloc[0]} is there twice"
+        )
+    untimed = finished[finished["time"].isna()]
+    if len(untimed):
+        raise StatisticsError(
+            f"arm {untimed['arm'].iloc[0]!r}: seed {untimed['seed'].iloc[0]} has "
+            "finished without a time"
         )
     by_arm = {
         arm: finished[finished["arm"] == arm].set_index("seed").sort_index()

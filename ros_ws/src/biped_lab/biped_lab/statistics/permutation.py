@@ -14,7 +14,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from lifelines import NelsonAalenFitter
 from numpy.typing import NDArray
 
 from biped_lab.statistics.censored import ROUNDING, Bools, Floats, faster
@@ -49,14 +48,16 @@ def restricted_times(time: Floats, reached: Bools) -> Floats:
 
 
 def logrank_scores(time: Floats, reached: Bools) -> Floats:
-    """Return successes less those to be expected by the Nelson-Aalen estimate.
+    """Return successes (0 or 1) less those to be expected, by Nelson's estimate.
 
-    One pair of arms only, (n,). The sum over an arm is the log-rank test's observed
-    less expected number. Peto, Peto: J. R. Stat. Soc. A 135 (1972).
+    Their sum over an arm is the log-rank test's observed less expected number. Peto,
+    Peto: J. R. Stat. Soc. A 135 (1972).
     """
-    fit = NelsonAalenFitter(nelson_aalen_smoothing=False).fit(time, reached)
-    expected = fit.cumulative_hazard_at_times(time).to_numpy()
-    return np.asarray(reached - expected)
+    # For each run (rows): which runs (columns) ended by then.
+    ended = time[..., None, :] <= time[..., :, None]
+    at_risk = ended.sum(axis=-2)
+    hazard = reached / at_risk
+    return np.asarray(reached - (ended * hazard[..., None, :]).sum(axis=-1))
 
 
 # -- tests -----------------------------------------------------------------------------
