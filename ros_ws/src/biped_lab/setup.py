@@ -14,6 +14,7 @@ setup(
     entry_points={
         "biped.verbs": ["lab = biped_lab.verbs.lab:add_parser"],
         "biped.lab_verbs": [
+            "compare = biped_lab.verbs.compare:add_parser",
             "power = biped_lab.verbs.power:add_parser",
             "report = biped_lab.verbs.report:add_parser",
             "run = biped_lab.verbs.run:add_parser",

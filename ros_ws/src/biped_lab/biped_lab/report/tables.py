@@ -10,7 +10,10 @@ import pandas as pd
 
 from biped_lab.report.estimates import compared, ratio_of_means, restricted_mean
 from biped_lab.report.finished import EPISODES, FIXED_SHARE, SIMULATED, FinishedRuns
+from biped_lab.results import ResultsError, StudyResults
 from biped_lab.statistics.censored import Estimate
+from biped_lab.statistics.comparison import compare
+from biped_lab.statistics.permutation import holm
 
 NOTHING = "–"
 
@@ -72,6 +75,7 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
                 _text(_of(found, "median"), "{:.0f}"),
                 _text(mean_episodes, "{:.0f}"),
                 _text(mean_s, "{:.0f}"),
+                _text(_of(found, "ert"), "{:.0f}"),
                 finished.arrangement.rivals[arm] or NOTHING,
                 _text(_of(found, "ratio"), "{:.2f}"),
                 _text(_of(found, "improvement"), "{:.2f}"),
@@ -81,10 +85,70 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
         )
     head = (
         "arm", "runs", "at the goal", "median [episodes]", "mean [episodes]",
-        "mean [s simulated]", "compared with", "ratio of medians", "P(faster)",
-        "p (Holm)", "fixed / NB",
+        "mean [s simulated]", "with restarts [episodes]", "compared with",
+        "ratio of medians", "P(faster)", "p (Holm)", "fixed / NB",
     )  # fmt: skip
     return Table(head, tuple(rows))
+
+
+def studies_table(
+    one: StudyResults, other: StudyResults, rng: np.random.Generator
+) -> Table:
+    """Return how the arms of one study compare with those of the same name in another.
+
+    Where both have the same runs, all is equal. P-values are corrected for all arms.
+
+    Raises:
+        ResultsError: no arm of that name, or bounds that differ.
+    """
+    arms = [arm.name for arm in one.study.arms]
+    arms = [name for name in arms if name in {arm.name for arm in other.study.arms}]
+    if not arms:
+        raise ResultsError(f"{one.study.name}, {other.study.name}: no arm in common")
+    bound = one.study.most_episodes
+    if bound != other.study.most_episodes:
+        raise ResultsError(
+            f"{one.study.name}, {other.study.name}: bounds of {bound} and "
+            f"{other.study.most_episodes} episodes do not compare"
+        )
+    found = [_both(one.runs, other.runs, arm, bound, rng) for arm in arms]
+    corrected = holm([float(both.loc["one", "p_wilcoxon"]) for both in found])
+    rows = [
+        (
+            arm,
+            *(
+                f"{_text(_of(both.loc[which], 'median'), '{:.0f}')} of "
+                f"{int(both.loc[which, 'n'])}"
+                for which in ("one", "other")
+            ),
+            _text(_of(both.loc["one"], "ratio"), "{:.2f}"),
+            _text(_of(both.loc["one"], "improvement"), "{:.2f}"),
+            _number(float(p), "{:.2g}"),
+        )
+        for arm, both, p in zip(arms, found, corrected, strict=True)
+    ]
+    head = (
+        "arm", f"{one.study.name}, median [episodes] of runs",
+        f"{other.study.name}, the same", "ratio", "P(faster)", "p (Holm)",
+    )  # fmt: skip
+    return Table(head, tuple(rows))
+
+
+def _both(
+    one: pd.DataFrame,
+    other: pd.DataFrame,
+    arm: str,
+    bound: int,
+    rng: np.random.Generator,
+) -> pd.DataFrame:
+    """Return `compare` of an arm's runs in two studies, as arms `one` and `other`."""
+    runs = pd.concat(
+        [
+            one[one["arm"] == arm].assign(arm="one"),
+            other[other["arm"] == arm].assign(arm="other"),
+        ]
+    )
+    return compare(runs, "other", bound, rng).set_index("arm")
 
 
 def cost_table(finished: FinishedRuns) -> Table:
