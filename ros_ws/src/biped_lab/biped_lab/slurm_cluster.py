@@ -70,7 +70,7 @@ class _SlurmExecutor(Executor):
 
     def __init__(self, jobs: submitit.SlurmExecutor) -> None:
         self._jobs = jobs
-        self._pending: dict[str, tuple[submitit.SlurmJob[Any], Future[Any]]] = {}
+        self._pending: dict[str, tuple[submitit.Job[Any], Future[Any]]] = {}
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._look, daemon=True)
         self._thread.start()
@@ -123,7 +123,7 @@ class _SlurmExecutor(Executor):
                     )
                 missed, asked = gone, time.monotonic()
 
-    def _gone(self) -> list[tuple[submitit.SlurmJob[Any], Future[Any]]]:
+    def _gone(self) -> list[tuple[submitit.Job[Any], Future[Any]]]:
         """Return whose jobs neither wait nor run, as far as SLURM says."""
         pending = list(self._pending.values())
         there = _ask("squeue", "--me", "--noheader", "--format=%i")
@@ -143,7 +143,7 @@ def _ask(*command: str) -> str | None:
     return asked.stdout if asked.returncode == 0 else None
 
 
-def _complete(job: submitit.SlurmJob[Any], future: Future[Any]) -> None:
+def _complete(job: submitit.Job[Any], future: Future[Any]) -> None:
     try:
         future.set_result(job.result())
     except Exception:  # what it was stands in the log
