@@ -12,7 +12,7 @@ from biped_common.exclusive_folder import LOCK_FILE
 from biped_lab.execution import new_stop_file, processes
 from biped_lab.run_folder import is_done, is_taken, read_cost, read_end
 
-from .studies import WALKS, carried_out, here, left_behind, odd, planned
+from .studies import WALKS, carried_out, left_behind, odd, planned
 
 
 def test_a_run_that_raises_is_told_in_a_line_with_the_place(tmp_path, odd_contestants):
@@ -102,10 +102,11 @@ def test_what_a_killed_worker_left_behind_is_removed(tmp_path, odd_contestants):
     assert left_behind(tmp_path) == []
 
 
-def test_a_driver_that_fails_leaves_no_worker_behind(tmp_path, odd_contestants):
+def test_a_driver_that_fails_stops_its_workers_first(tmp_path, odd_contestants):
     def watch():
         raise LookupError("no display")
 
+    study = odd(good="none") | {"most_episodes": 1_000_000}
     with pytest.raises(LookupError):
-        carried_out(tmp_path, odd(good="none"), here, watch=watch)
-    assert not any(map(is_taken, planned(tmp_path, odd(good="none"))))
+        carried_out(tmp_path, study, watch=watch)
+    assert not any(map(is_taken, planned(tmp_path, study)))
