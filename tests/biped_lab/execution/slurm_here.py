@@ -12,7 +12,7 @@ import shutil
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "scancel")
@@ -79,6 +79,13 @@ def slurm_here(folder: Path) -> Iterator[Path]:
         *(f"--{kind}={folder}/munge.{kind.partition('-')[0]}"
           for kind in ("socket", "log-file", "pid-file", "seed-file")),
     ]  # fmt: skip
+
+    def answer(*words: str) -> list[str]:
+        asked = subprocess.run(
+            words, env=environment, capture_output=True, text=True, timeout=TIMEOUT_S
+        )
+        return asked.stdout.split()
+
     daemons: list[subprocess.Popen[bytes]] = []
     try:
         for words in (munge, ["slurmctld", "-D"], ["slurmd", "-D"]):
@@ -87,17 +94,13 @@ def slurm_here(folder: Path) -> Iterator[Path]:
                     subprocess.Popen(words, env=environment, stdout=log, stderr=log)
                 )
             if words is munge:
-                _wait_for((folder / "munge.socket").exists)
-        sinfo = ["sinfo", "--noheader", "--format=%T"]
-        _wait_for(
-            lambda: subprocess.run(
-                sinfo, env=environment, capture_output=True, timeout=TIMEOUT_S
-            ).stdout.split() == [b"idle"]
-        )  # fmt: skip
+                assert wait_for((folder / "munge.socket").exists)
+        node = ("sinfo", "--noheader", "--format=%T")
+        assert wait_for(lambda: answer(*node) == ["idle"]), "the cluster did not start"
         yield conf
     finally:
-        cancel = ["scancel", f"--user={getpass.getuser()}"]
-        subprocess.run(cancel, env=environment, capture_output=True, timeout=TIMEOUT_S)
+        answer("scancel", f"--user={getpass.getuser()}")
+        wait_for(lambda: not answer("squeue", "--noheader"))
         for daemon in reversed(daemons):
             daemon.terminate()
             try:
@@ -118,8 +121,9 @@ def _free_ports(count: int) -> list[int]:
         return [each.getsockname()[1] for each in sockets]
 
 
-def _wait_for(condition) -> None:
+def wait_for(condition: Callable[[], bool]) -> bool:
+    """Return whether a condition came true in time."""
     end = time.monotonic() + TIMEOUT_S
-    while not condition():
-        assert time.monotonic() < end, "the cluster did not start"
+    while not condition() and time.monotonic() < end:
         time.sleep(0.1)
+    return condition()

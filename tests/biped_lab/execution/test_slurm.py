@@ -11,7 +11,7 @@ from biped_common.command_line import CommandError
 from biped_lab.run_folder import is_done, is_taken, read_cost
 from biped_lab.slurm_cluster import slurm
 
-from .slurm_here import is_installed, slurm_here
+from .slurm_here import is_installed, slurm_here, wait_for
 from .studies import WALKS, carried_out, left_behind, odd, planned
 
 pytestmark = pytest.mark.skipif(
@@ -77,9 +77,10 @@ def test_a_stopped_study_takes_its_jobs_out_of_the_queue(cluster, tmp_path):
         cluster,
         stop_asked=lambda: any(read_cost(run).episodes > 0 for run in runs),
     )
-    assert queued() == []
+    assert wait_for(lambda: not queued())  # what ran is just ending
     assert not any(map(is_taken, runs))
     assert not any(map(is_done, runs))
+    assert not all(read_cost(run).sittings for run in runs)
 
 
 def test_a_job_that_sbatch_refuses_is_told(cluster, tmp_path, odd_contestants):
