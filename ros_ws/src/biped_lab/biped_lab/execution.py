@@ -17,7 +17,6 @@ import ctypes
 import multiprocessing
 import os
 import signal
-import sys
 import time
 import traceback
 import uuid
@@ -279,4 +278,4 @@ def _end_with(parent: int) -> None:
     """Do not outlive a process, however it ends."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it ended before the line above
-        sys.exit(1)
+        os._exit(1)

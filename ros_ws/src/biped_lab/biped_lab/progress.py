@@ -141,11 +141,11 @@ def summary(arms: Sequence[ArmProgress], workers: int | None) -> str:
     if done == runs:
         time_left = "nothing left"
     elif left is None:
-        time_left = "time left: not known before a run is done"
+        time_left = "time left: not known yet"
     elif workers is None:
         time_left = f"about {_duration(left)} of processor time left"
     else:
-        time_left = f"about {_duration(left / workers)} left"
+        time_left = f"about {_duration(left / min(workers, runs - done))} left"
     return f"{done} of {runs} runs done, {running} running; {time_left}"
 
 
