@@ -20,6 +20,7 @@ PARTS = (
     "recorder",
     "player",
     "ros2_verbs",
+    "lab_throughput",
 )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +10,17 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from biped_common.exclusive_folder import LOCK_FILE
 from biped_common.live_display import LiveDisplay
 from biped_lab.results import RUNS, read_study
-from biped_lab.run_folder import Cost, End, is_done, read_cost, read_end
+from biped_lab.run_folder import (
+    Cost,
+    End,
+    RunError,
+    is_done,
+    is_taken,
+    read_cost,
+    read_end,
+)
 
 _PLAIN_INTERVAL_S = 30.0
 
@@ -56,13 +62,16 @@ class StudyWatch:
             ended, running, spent_s = [], 0, 0.0
             for address in arm.runs.values():
                 folder = self._runs / address
-                if address not in self._done and is_done(folder):
-                    self._done[address] = (read_end(folder), read_cost(folder))
-                if address in self._done:
-                    ended.append(self._done[address])
-                else:
-                    running += _is_locked(folder)
-                    spent_s += read_cost(folder).cpu_s
+                try:
+                    if address not in self._done and is_done(folder):
+                        self._done[address] = (read_end(folder), read_cost(folder))
+                    if address in self._done:
+                        ended.append(self._done[address])
+                    else:
+                        running += is_taken(folder)
+                        spent_s += read_cost(folder).cpu_s
+                except RunError:
+                    continue  # damaged; who carries it out or reads it says so
             at = [getattr(end, self.study.goal) for end, _ in ended]
             found.append(
                 ArmProgress(
@@ -132,18 +141,20 @@ def summary(arms: Sequence[ArmProgress], workers: int | None) -> str:
     if done == runs:
         time_left = "nothing left"
     elif left is None:
-        time_left = "time left: not known before a run is done"
+        time_left = "time left: not known yet"
     elif workers is None:
         time_left = f"about {_duration(left)} of processor time left"
     else:
-        time_left = f"about {_duration(left / workers)} left"
+        time_left = f"about {_duration(left / min(workers, runs - done))} left"
     return f"{done} of {runs} runs done, {running} running; {time_left}"
 
 
 class StudyProgress(LiveDisplay):
     """Shows a study while it is carried out."""
 
-    def __init__(self, folder: Path, name: str, console: Console, workers: int) -> None:
+    def __init__(
+        self, folder: Path, name: str, console: Console, workers: int | None
+    ) -> None:
         """Prepare; show nothing yet."""
         super().__init__(console, live=True, plain_interval_s=_PLAIN_INTERVAL_S)
         self._folder, self._name, self._workers = folder, name, workers
@@ -157,17 +168,6 @@ class StudyProgress(LiveDisplay):
 
     def _table(self) -> Table:
         return status_table(self._folder, self._name, self._watch, self._workers)
-
-
-def _is_locked(folder: Path) -> bool:
-    try:
-        with (folder / LOCK_FILE).open() as file:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except FileNotFoundError:
-        return False
-    except BlockingIOError:
-        return True
-    return False  # left behind by a process that was killed
 
 
 def _duration(seconds: float) -> str:

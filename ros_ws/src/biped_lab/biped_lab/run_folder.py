@@ -12,9 +12,10 @@ that is done is never run again; a folder in which another process runs is left 
 
 from __future__ import annotations
 
+import fcntl
 import time
-from collections.abc import Callable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -24,8 +25,9 @@ import pyarrow.parquet as pq
 from threadpoolctl import threadpool_limits
 
 from biped_common.atomic_file import atomic_file
+from biped_common.command_line import CommandError
 from biped_common.errors import BipedError
-from biped_common.exclusive_folder import exclusive_folder
+from biped_common.exclusive_folder import LOCK_FILE, exclusive_folder
 from biped_common.settings import from_mapping
 from biped_lab.code_identity import code_identity
 from biped_lab.contestant import MILESTONES, Contestant, entry
@@ -35,11 +37,16 @@ from sim_node.engines import ENGINES
 RUN_FILE, MEMORY_FILE, EPISODES_FILE = "run.json", "memory.npz", "episodes.parquet"
 END_FILE, COST_FILE = "end.json", "cost.json"
 CHECKPOINT_EVERY_S = 10.0
+_WHAT_TO_DO = "remove the run's folder, and it begins anew"
 _Content = TypeVar("_Content")
 
 
 class RunError(BipedError, RuntimeError):
     """A run that cannot be carried out here."""
+
+
+class TakenError(RunError):
+    """Another process is in the folder."""
 
 
 class End(msgspec.Struct, frozen=True):
@@ -77,9 +84,37 @@ def is_done(folder: Path) -> bool:
     return (folder / END_FILE).exists()
 
 
+def is_taken(folder: Path) -> bool:
+    """Return whether a process is in the folder, on whichever machine."""
+    try:
+        with (folder / LOCK_FILE).open() as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return False
+    except BlockingIOError:
+        return True
+    return False  # left behind by a process that was killed
+
+
 def read_end(folder: Path) -> End:
     """Return how a run ended."""
     return _read(folder / END_FILE, End)
+
+
+def check_end(folder: Path) -> None:
+    """See that what a run that is done wrote at its end is whole.
+
+    Raises:
+        RunError: it is not.
+    """
+    end, path = read_end(folder), folder / EPISODES_FILE
+    try:
+        rows = pq.read_metadata(path).num_rows
+    except (OSError, ValueError) as error:
+        words = " ".join(str(error).split())
+        raise RunError(f"{path}: cannot be read: {words}; {_WHAT_TO_DO}") from None
+    if rows != end.episodes:
+        raise RunError(f"{path}: {rows} of {end.episodes} episodes; {_WHAT_TO_DO}")
 
 
 def read_cost(folder: Path) -> Cost:
@@ -106,14 +141,17 @@ def carry_out(
         checkpoint_every_s: real time between checkpoints.
 
     Raises:
-        RunError: the code here is not the run's.
-        CommandError: another process is in the folder.
+        TakenError: another process is in the folder.
+        RunError: the code here is not the run's, or a file is not what a run wrote.
+        CheckpointError: the checkpoint is not.
     """
     if is_done(folder):
         return True
+    if stop():
+        return False
     spec = read_spec(folder)
     _check_code(folder, spec)
-    with exclusive_folder(folder), threadpool_limits(1):
+    with _to_itself(folder), threadpool_limits(1):
         if is_done(folder):  # by whoever was in the folder just now
             return True
         sittings = read_cost(folder).sittings + 1
@@ -133,12 +171,28 @@ def carry_out(
     return True
 
 
+@contextmanager
+def _to_itself(folder: Path) -> Iterator[None]:
+    """Keep others out; remove what a killed process was just writing."""
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(exclusive_folder(folder))
+        except CommandError as error:
+            raise TakenError(str(error)) from None
+        for half_written in folder.glob(".*.*"):
+            half_written.unlink()
+        yield
+
+
 def _contestant(folder: Path, spec: RunSpec) -> Contestant:
     who = entry(spec.contestant)
     settings, options = spec.run_settings(), from_mapping(who.options, spec.options)
     memory = folder / MEMORY_FILE
     if memory.exists():
-        return who.resume(memory, settings, options, spec.seed)
+        try:
+            return who.resume(memory, settings, options, spec.seed)
+        except BipedError as error:
+            raise RunError(f"{error}; {_WHAT_TO_DO}") from None
     return who.begin(settings, options, spec.seed)
 
 
@@ -203,4 +257,6 @@ def _read(path: Path, kind: type[_Content]) -> _Content:
     except OSError as error:
         raise RunError(f"{path}: cannot be read: {error}") from None
     except (msgspec.DecodeError, RecursionError) as error:
-        raise RunError(f"{path}: is not what a run wrote: {error}") from None
+        raise RunError(
+            f"{path}: is not what a run wrote: {error}; {_WHAT_TO_DO}"
+        ) from None
