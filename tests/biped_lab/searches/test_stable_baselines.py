@@ -25,11 +25,12 @@ def test_a_resumed_ppo_is_the_uninterrupted_one(tmp_path):
     pytest.importorskip("stable_baselines3")
     file = tmp_path / "ppo.npz"
     with closing(PPO.begin(SETTINGS, NoOptions(), 1)) as whole:
-        for episode in range(30):  # two updates of the policy
+        for episode in range(30):  # more than the 2,048 decisions of an update
             if episode == 20:
                 whole.save(file)
             whole.episode()
         figures = whole.figures()
+        assert {*whole.table()["target_ticks"]} == {SETTINGS.gait.walk_ticks}
     with closing(PPO.resume(file, SETTINGS, NoOptions(), 1)) as resumed:
         assert resumed.episodes == 20
         for _ in range(10):

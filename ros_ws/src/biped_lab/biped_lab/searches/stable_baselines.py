@@ -20,6 +20,7 @@ import importlib
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -162,8 +163,10 @@ class PpoContestant:
         self.ticks = WalkedTicks()
         self.cpu_s = 0.0
         self._env = BipedWaistEnv(settings=to_mapping(settings))
+        learner = settings.learner
+        whole = replace(learner.schedule, first_target_s=settings.gait.duration_s)
         self._task = self._env.task = _NotedTask(
-            self._env.settings.learner, settings.gait.walk_ticks
+            replace(learner, schedule=whole), settings.gait.walk_ticks
         )
         self._gate = _EpisodeGate(self._env)
         (draw,) = learner_stream(seed).generate_state(1)
