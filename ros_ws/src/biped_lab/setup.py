@@ -22,11 +22,17 @@ setup(
         ],
         "biped.contestants": [
             "by_settings = biped_lab.learner_contestant:BY_SETTING",
+            "cma_es = biped_lab.searches.cma_es:WHOLE",
+            "cma_es_incremental = biped_lab.searches.cma_es:INCREMENTAL",
             "episodic_ps = biped_lab.rivals.episodic_ps:ENTRY",
+            "genetic = biped_lab.searches.genetic:ENTRY",
+            "linear_programming = biped_lab.searches.linear_programming:ENTRY",
             "online_ps = biped_lab.rivals.online_ps:ENTRY",
             "parp = biped_lab.rivals.parp:ENTRY",
             "random = biped_lab.rivals.random_choice:ENTRY",
             "sarsa_lambda = biped_lab.rivals.sarsa_lambda:ENTRY",
+            "stable_baselines = biped_lab.searches.stable_baselines:ENTRY",
+            "tail_search = biped_lab.searches.tail_search:ENTRY",
         ],
     },
 )
