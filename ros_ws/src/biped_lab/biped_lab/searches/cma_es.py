@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import cma
+import cma  # type: ignore[import-untyped]
 import numpy as np
 from numpy.typing import NDArray
 
