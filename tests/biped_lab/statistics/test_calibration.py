@@ -6,14 +6,18 @@ the figures of many more.
 
 import sys
 
+import numpy as np
 import pytest
-from tests.biped_lab.statistics.test_permutation import rng
 
 from biped_lab.statistics import calibration
 from biped_lab.statistics.power import Scenario
 
 COVERED = 200
-TESTED = 2000
+TESTED = 1000
+
+
+def rng():
+    return np.random.default_rng(1)
 
 
 def band(share, studies):

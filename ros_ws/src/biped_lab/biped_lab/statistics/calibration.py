@@ -40,7 +40,6 @@ from biped_lab.statistics.resampling import ratio_of_medians, resampled
 from biped_lab.statistics.running_time import expected_running_time
 
 _SAMPLES = 1_000
-_PERMUTATIONS = 2_000
 _MANY = 200_000
 
 COVERED = [
@@ -127,7 +126,7 @@ def rejections(
     pooled = [
         *zip(time.reshape(studies, -1), reached.reshape(studies, -1), strict=True)
     ]
-    labels = relabellings(seeds, 2 * seeds, rng, _PERMUTATIONS)
+    labels = relabellings(seeds, 2 * seeds, rng)
     wilcoxon, logrank, restricted = (
         np.array([scores(*runs) for runs in pooled])
         for scores in (wilcoxon_scores, logrank_scores, restricted_times)
@@ -135,7 +134,7 @@ def rejections(
     p = {
         "Wilcoxon": permutation_p(wilcoxon, labels),
         "in pairs": permutation_p(
-            wilcoxon[:, :seeds] - wilcoxon[:, seeds:], swaps(seeds, rng, _PERMUTATIONS)
+            wilcoxon[:, :seeds] - wilcoxon[:, seeds:], swaps(seeds, rng)
         ),
         "log-rank": permutation_p(logrank, labels),
         "RMST": permutation_p(restricted, labels),

@@ -20,6 +20,8 @@ from biped_lab.statistics.censored import ROUNDING, Bools, Floats, faster
 
 PERMUTATIONS = 10_000
 """So many are drawn; where no more exist, all are taken, and the test is exact."""
+_AT_ONCE = 50
+"""Studies whose sums, 4 MB, stay in the processor's cache."""
 
 
 # -- scores: (..., n) times and successes of both arms to (..., n) scores --------------
@@ -118,10 +120,15 @@ def permutation_p(
         scores: (..., n) of runs, or differences of pairs.
         permutations: (n, count) from `relabellings` or `swaps`.
     """
-    sums = np.abs(scores @ permutations)
-    slack = ROUNDING * np.abs(scores).sum(axis=-1, keepdims=True)
-    extreme = sums >= sums[..., :1] - slack
-    return np.asarray(extreme.mean(axis=-1))
+    studies = scores.reshape(-1, len(permutations))
+    p = np.empty(len(studies))
+    for first in range(0, len(studies), _AT_ONCE):
+        block = studies[first : first + _AT_ONCE]
+        sums = np.abs(block @ permutations)
+        slack = ROUNDING * np.abs(block).sum(axis=1, keepdims=True)
+        extreme = sums >= sums[:, :1] - slack
+        p[first : first + _AT_ONCE] = extreme.mean(axis=1)
+    return p.reshape(scores.shape[:-1])
 
 
 def holm(p_values: Sequence[float]) -> Floats:
