@@ -13,7 +13,6 @@ What failures do:
 from __future__ import annotations
 
 import concurrent.futures as futures
-import ctypes
 import multiprocessing
 import os
 import signal
@@ -24,10 +23,12 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from biped_common.errors import BipedError
+from biped_common.lifeline import end_with
 from biped_lab.run_folder import (
     CHECKPOINT_EVERY_S,
     Cost,
@@ -42,7 +43,6 @@ from biped_lab.run_folder import (
 
 OpenExecutor = Callable[[], AbstractContextManager[Executor]]
 """Its `shutdown` takes `cancel_futures`, for those that have not begun."""
-_PR_SET_PDEATHSIG = 1
 _WATCH_S = 0.5
 _ALONE_AFTER, _GIVEN_UP_AFTER = 2, 3
 """Losses of a run's worker in a row, without an episode kept in between."""
@@ -58,7 +58,8 @@ class Failure(NamedTuple):
 # -- the one code path ----------------------------------------------------------------
 
 
-class Driver(NamedTuple):
+@dataclass(frozen=True)
+class Driver:
     """Who has runs carried out, and how."""
 
     open_executor: OpenExecutor
@@ -245,18 +246,20 @@ def _in_words(error: Exception) -> str:
 @contextmanager
 def processes(workers: int) -> Iterator[Executor]:
     """Open a pool of processes on this machine, which end with this one."""
+    others = multiprocessing.active_children()
     pool = _Pool(
         workers,
         multiprocessing.get_context("spawn"),
-        initializer=_end_with,
-        initargs=(os.getpid(),),
+        initializer=end_with,
+        initargs=(os.getpid(), signal.SIGKILL),
     )
     with pool:
         try:
             yield pool
         except BaseException:
             for process in multiprocessing.active_children():
-                process.kill()
+                if process not in others:
+                    process.kill()
             raise
 
 
@@ -272,10 +275,3 @@ class _Pool(ProcessPoolExecutor):
             return super().submit(fn, *args, **named)
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _end_with(parent: int) -> None:
-    """Do not outlive a process, however it ends."""
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it ended before the line above
-        os._exit(1)

@@ -97,31 +97,42 @@ class _SlurmExecutor(Executor):
         if cancel_futures and self._pending:
             _ask("scancel", "--state=PENDING", *self._pending)
             for job, future in self._gone():
-                del self._pending[job.job_id]
-                future.cancel()
+                if self._settles(job):
+                    future.cancel()
         if wait:
             self._over.set()
             self._thread.join()
 
     def _look(self) -> None:
+        try:
+            self._complete_futures()
+        except Exception as error:  # such as of a file system that is away
+            for job, future in list(self._pending.values()):
+                if self._settles(job):
+                    future.set_exception(BrokenExecutor(str(error)))
+
+    def _complete_futures(self) -> None:
         missed: set[str] = set()
         asked = time.monotonic()
         while not self._over.wait(_LOOK_FOR_RESULTS_S):
             for job, future in list(self._pending.values()):
-                if job.paths.result_pickle.exists():
-                    self._pending.pop(job.job_id, None)
+                if job.paths.result_pickle.exists() and self._settles(job):
                     _complete(job, future)
             if self._pending and time.monotonic() - asked >= _ASK_SQUEUE_S:
-                gone = {job.job_id for job, _ in self._gone()}
-                # Twice, since a result may take a while to be seen across a network.
-                for number in gone & missed & self._pending.keys():
-                    job, future = self._pending.pop(number)
-                    future.set_exception(
-                        BrokenExecutor(
-                            f"job {number} ended early; log: {job.paths.stderr}"
+                gone = self._gone()
+                for job, future in gone:
+                    # Twice, since a result may take a while to be seen.
+                    if job.job_id in missed and self._settles(job):
+                        future.set_exception(
+                            BrokenExecutor(
+                                f"job {job.job_id} ended early; log: {job.paths.stderr}"
+                            )
                         )
-                    )
-                missed, asked = gone, time.monotonic()
+                missed, asked = {job.job_id for job, _ in gone}, time.monotonic()
+
+    def _settles(self, job: submitit.Job[Any]) -> bool:
+        """Take a job out; return whether no other thread has done so before."""
+        return self._pending.pop(job.job_id, None) is not None
 
     def _gone(self) -> list[tuple[submitit.Job[Any], Future[Any]]]:
         """Return whose jobs neither wait nor run, as far as SLURM says."""
