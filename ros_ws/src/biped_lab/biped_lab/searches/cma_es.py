@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import cma  # type: ignore[import-untyped]
+import cma
 import numpy as np
 from numpy.typing import NDArray
 
