@@ -76,6 +76,7 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
                 _text(mean_episodes, "{:.0f}"),
                 _text(mean_s, "{:.0f}"),
                 _text(_of(found, "ert"), "{:.0f}"),
+                _number(found["scatter"], "{:.2f}"),
                 finished.arrangement.rivals[arm] or NOTHING,
                 _text(_of(found, "ratio"), "{:.2f}"),
                 _text(_of(found, "improvement"), "{:.2f}"),
@@ -85,7 +86,7 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
         )
     head = (
         "arm", "runs", "at the goal", "median [episodes]", "mean [episodes]",
-        "mean [s simulated]", "with restarts [episodes]", "compared with",
+        "mean [s simulated]", "with restarts [episodes]", "scatter", "compared with",
         "ratio of medians", "P(faster)", "p (Holm)", "fixed / NB",
     )  # fmt: skip
     return Table(head, tuple(rows))
