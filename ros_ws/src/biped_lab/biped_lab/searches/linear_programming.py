@@ -64,7 +64,7 @@ def static_zmp_error(settings: RunSettings) -> NDArray[np.float64]:
     )
     ticks: list[ControlTick] = []
     planned = replace(settings, sim=nominal)
-    walker = Walker(planned, np.random.default_rng(), ticks.append)
+    walker = Walker(planned, np.random.default_rng(0), ticks.append)
     with closing(walker):
         walker.walk(static_walk(settings.learner, walker.walk_ticks))
     zmp_m = np.array([tick.contact[:2] for tick in ticks])

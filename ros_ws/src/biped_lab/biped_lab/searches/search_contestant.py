@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from biped_bringup.replay import ReplayingWalker
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import WalkedTicks
-from biped_common.seeds import learner_stream
+from biped_common.seeds import learner_stream, robot_stream
 from biped_common.settings import SettingsError, to_mapping
 from biped_lab.contestant import AnyOptions, Contestant, Entry
 from biped_lab.searches.plan import COMPONENTS, PlanSpace
@@ -115,9 +115,12 @@ class SearchContestant:
             )
         self.settings = settings
         self._space = kind.space(settings)
-        stream = learner_stream(seed)
-        self._searcher = kind.make(settings, self._space, np.random.default_rng(stream))
-        self._walker = ReplayingWalker(settings, np.random.default_rng())
+        searching, unused = (
+            np.random.default_rng(stream(seed))
+            for stream in (learner_stream, robot_stream)
+        )
+        self._searcher = kind.make(settings, self._space, searching)
+        self._walker = ReplayingWalker(settings, unused)
         self._task = _task(settings, self._walker.walk_ticks, kind.incremental)
         self._log = EpisodeLog()
         self._plans: list[NDArray[np.int64]] = []
