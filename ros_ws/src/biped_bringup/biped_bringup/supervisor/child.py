@@ -8,7 +8,6 @@ What failures do:
 
 from __future__ import annotations
 
-import ctypes
 import os
 import signal
 import subprocess
@@ -20,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import IO
 
-_PR_SET_PDEATHSIG = 1
+from biped_common.lifeline import end_with
 
 
 class Child:
@@ -92,7 +91,7 @@ class Child:
             text=True,
             errors="replace",
             start_new_session=True,
-            preexec_fn=partial(_die_with, os.getpid()),
+            preexec_fn=partial(end_with, os.getpid(), signal.SIGTERM),
         )
         assert self._process.stdout is not None
         self._reader = threading.Thread(
@@ -135,11 +134,3 @@ class Child:
                 log.write(line)
         except OSError as error:
             self.log_failure = f"{self._log_file}: {error.strerror}"
-
-
-def _die_with(supervisor: int) -> None:
-    """Have the kernel end this process when the supervisor is gone, however it went."""
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-    # It may have died before the line above. In a container it may itself be process 1.
-    if os.getppid() != supervisor:
-        os._exit(1)
