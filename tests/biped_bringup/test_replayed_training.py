@@ -13,11 +13,11 @@ from biped_bringup.run_settings import RunSettings, load_settings
 from biped_bringup.training import TrainingRun
 from learner_node.checkpoint import read_checkpoint
 
-EPISODES, SAVED_AFTER = 60, 30
+EPISODES, SAVED_AFTER = 40, 20
 _PRACTICE = ("gait.steps=1", "learner.schedule.successes_per_subtask=3")
 _FIXED = "learner.xol.fixed_mode"
 SETTINGS = {
-    "K = 15": load_settings("paper", None, _PRACTICE),
+    "K = 5": load_settings("paper", None, (*_PRACTICE, f"{_FIXED}.rewards_to_fix=5")),
     "K = 1": load_settings("paper", None, (*_PRACTICE, f"{_FIXED}.rewards_to_fix=1")),
     "no fixed mode": load_settings(
         "paper", None, (*_PRACTICE, f"{_FIXED}.strategy=none")

@@ -31,38 +31,50 @@ class CodeIdentity(NamedTuple):
     """Versions of others' packages, Python's among them."""
 
 
+class _Module(NamedTuple):
+    """What counts of a module."""
+
+    text: str
+    """Its syntax tree."""
+    imports: tuple[str, ...]
+    """What may be modules among the names that it imports."""
+
+
 @cache
 def code_identity(*modules: str) -> CodeIdentity:
     """Return the identity of some modules and all that they import."""
-    trees: dict[str, ast.Module] = {}
+    found: dict[str, str] = {}
     others: set[str] = set()
     pending = list(modules)
     while pending:
         name = pending.pop()
-        if name in trees:
+        if name in found:
             continue
         top = name.partition(".")[0]
         if top not in _OWN:
             others.add(top)
             continue
-        tree = _tree(name)
-        if tree is not None:
-            trees[name] = tree
-            pending += _imported(tree)
+        module = _module(name)
+        if module is not None:
+            found[name] = module.text
+            pending += module.imports
             pending += _packages_above(name)
     digest = hashlib.sha256()
-    for name in sorted(trees):
-        digest.update(f"{name}\n{ast.dump(_bare(trees[name]))}\n".encode())
+    for name in sorted(found):
+        digest.update(f"{name}\n{found[name]}\n".encode())
     return CodeIdentity(digest.hexdigest()[:16], _versions(others))
 
 
-def _tree(name: str) -> ast.Module | None:
-    """Return a module's syntax tree; None where the name is no module's."""
+@cache
+def _module(name: str) -> _Module | None:
+    """Return what counts of a module; None where the name is no module's."""
     spec = find_spec(name)
     if spec is None or spec.origin is None:
         return None
     with open(spec.origin, "rb") as file:
-        return ast.parse(file.read())
+        tree = ast.parse(file.read())
+    imports = tuple(_imported(tree))
+    return _Module(ast.dump(_bare(tree)), imports)
 
 
 def _imported(tree: ast.Module) -> Iterator[str]:
@@ -108,8 +120,11 @@ def _bare(tree: ast.Module) -> ast.Module:
     return tree
 
 
+_packages_of_modules = cache(packages_distributions)
+
+
 def _versions(modules: set[str]) -> dict[str, str]:
-    of_module = packages_distributions()
+    of_module = _packages_of_modules()
     names = {
         package
         for module in modules - sys.stdlib_module_names
