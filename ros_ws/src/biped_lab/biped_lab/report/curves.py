@@ -58,8 +58,8 @@ def share_at_goal(finished: FinishedRuns) -> Figure:
                 censored, shares, "|", color=colour[arm], markersize=9.0,
                 markeredgewidth=1.4, label="_censored", clip_on=False,
             )  # fmt: skip
-        axes.set_ylim(-0.03, 1.03)
-        axes.set_xlim(left=0.0)
+    axes.set_ylim(-0.03, 1.03)  # all panels share their axes
+    axes.set_xlim(0.0, max(curve["episode"].max() for curve in curves.values()))
     return figure
 
 

@@ -25,6 +25,7 @@ _BESIDE = 0.55
 _BOUNDED = "////"
 _MOST_COLUMNS = 4
 _PANEL_IN = 1.75
+_TITLE_LINE_IN = 0.2
 
 
 def bar(
@@ -122,7 +123,16 @@ def mark_legend(censored: bool) -> list[Artist]:
 
 def label_places(axes: Axes, finished: FinishedRuns, places: Sequence[str]) -> None:
     """Name the places along the axis of the arms."""
-    axes.set_xticks(range(len(places)), [wrapped(place) for place in places])
+    if len(places) > _MOST_UPRIGHT and max(map(len, places)) > _LONG_NAME:
+        axes.set_xticks(
+            range(len(places)),
+            places,
+            rotation=40.0,
+            ha="right",
+            rotation_mode="anchor",
+        )
+    else:
+        axes.set_xticks(range(len(places)), [wrapped(place) for place in places])
     axes.tick_params(axis="x", length=0.0)
     label = _AXES.get(finished.arrangement.axis, finished.arrangement.axis)
     without = "; none: no fixed mode" if NO_FIXED_MODE in places else ""
@@ -134,6 +144,8 @@ def label_places(axes: Axes, finished: FinishedRuns, places: Sequence[str]) -> N
 
 _AXES = {"K": "K [rewards]", "LT": "LT [successes per subtask]"}
 _FEWEST_PLACES = 4
+_MOST_UPRIGHT, _LONG_NAME = 7, 8
+"""More names than these, longer than this many letters, run into one another."""
 
 
 def arm_panels(
@@ -144,13 +156,15 @@ def arm_panels(
     if len(arms) > _MOST_COLUMNS:  # rows of about the same length
         columns = math.ceil(len(arms) / math.ceil(len(arms) / _MOST_COLUMNS))
     rows = math.ceil(len(arms) / columns)
-    figure = new_figure(_PANEL_IN * rows + (0.9 if rows == 1 else 0.4))
+    titles = [wrapped(finished.arrangement.title(arm), 20) for arm in arms]
+    lines = max((title.count("\n") for title in titles), default=0)
+    row_in = _PANEL_IN + _TITLE_LINE_IN * lines
+    figure = new_figure(row_in * rows + (0.9 if rows == 1 else 0.4))
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for unused in grid.flat[len(arms) :]:
         unused.set_visible(False)
     for i, (arm, axes) in enumerate(zip(arms, grid.flat, strict=False)):
-        title = wrapped(finished.arrangement.title(arm), 20)
-        axes.set_title(title, color=finished.arrangement.colours[arm])
+        axes.set_title(titles[i], color=finished.arrangement.colours[arm])
         if i + columns >= len(arms):
             axes.tick_params(labelbottom=True)
     figure.supxlabel(x_label, fontsize=9.0)
