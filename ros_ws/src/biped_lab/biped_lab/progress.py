@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,8 +34,8 @@ class ArmProgress:
     done: int
     running: int
     runs: int
-    reached: Sequence[int]
-    """Episodes to the goal, of the runs that are done and have reached it."""
+    reached_at: Sequence[float]
+    """Episodes to the goal, of the runs that are done; infinite: not reached."""
     cpu_s: Sequence[float]
     """Of each run that is done."""
     spent_s: float
@@ -76,7 +77,7 @@ class StudyWatch:
             found.append(
                 ArmProgress(
                     arm.name, len(ended), running, len(arm.runs),
-                    [n for n in at if n is not None],
+                    [math.inf if n is None else n for n in at],
                     [cost.cpu_s for _, cost in ended], spent_s,
                 )
             )  # fmt: skip
@@ -126,8 +127,8 @@ def status_table(
     for arm in arms:
         table.add_row(
             arm.name, f"{arm.done} of {arm.runs}", str(arm.running), str(arm.waiting),
-            str(arm.done - len(arm.reached)),
-            f"{statistics.median(arm.reached):g}" if arm.reached else "-",
+            str(arm.reached_at.count(math.inf)),
+            _median(arm.reached_at),
         )  # fmt: skip
     table.caption = summary(arms, workers)
     table.caption_justify = "left"
@@ -168,6 +169,14 @@ class StudyProgress(LiveDisplay):
 
     def _table(self) -> Table:
         return status_table(self._folder, self._name, self._watch, self._workers)
+
+
+def _median(episodes: Sequence[float]) -> str:
+    """Return the median in words; runs that were stopped took longer than all."""
+    if not episodes:
+        return "-"
+    middle = statistics.median(episodes)
+    return "beyond the bound" if math.isinf(middle) else f"{middle:g}"
 
 
 def _duration(seconds: float) -> str:
