@@ -7,8 +7,7 @@ import pytest
 
 from biped_bringup.run_settings import load_settings
 from biped_common.errors import BipedError
-from biped_lab.contestant import entry
-from biped_lab.learner_contestant import NoOptions
+from biped_lab.contestant import NoOptions, entry
 
 SETTINGS = load_settings(changes=("gait.steps=2",))
 PPO = entry("stable_baselines")

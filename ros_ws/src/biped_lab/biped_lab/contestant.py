@@ -11,7 +11,7 @@ Contestants are entry points of the group `biped.contestants`, each an `Entry`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -24,11 +24,14 @@ from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import WalkedTicks
 from biped_common.settings import Settings
 from biped_common.verbs import entry_points
+from learner_node.walking.episode_log import EpisodeLog
+from msgs_json.end_cause import EndCause
 
 GROUP = "biped.contestants"
 MILESTONES = ("schedule", "greedy")
 
 AnyOptions = TypeVar("AnyOptions", bound=Settings)
+_CAUSES = np.array([str(cause) for cause in EndCause])
 
 
 class UnknownContestantError(LookupError):
@@ -79,6 +82,11 @@ class Contestant(Protocol):
 
 
 @dataclass(frozen=True)
+class NoOptions(Settings):
+    """Of a contestant whose constants all stand in the settings of the run."""
+
+
+@dataclass(frozen=True)
 class Entry(Generic[AnyOptions]):
     """How a contestant is made."""
 
@@ -90,8 +98,6 @@ class Entry(Generic[AnyOptions]):
     """From what it saved."""
     module: str
     """The code of its own: what it imports is part of a run's identity."""
-    label: str
-    """As it stands in tables and figures."""
 
 
 @cache
@@ -110,6 +116,8 @@ def entry(name: str) -> Entry[Any]:
     return made
 
 
-def longest(table: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
-    """Return for each episode the most control ticks walked until then."""
-    return np.maximum.accumulate(np.asarray(table["control_ticks"], dtype=np.int64))
+def log_table(log: EpisodeLog) -> dict[str, NDArray[Any]]:
+    """Return the columns of a log as `Contestant.table` has them."""
+    columns = log.arrays()
+    columns["end_cause"] = _CAUSES[columns["end_cause"]]
+    return columns

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,19 +14,16 @@ from biped_bringup.replay import DEFAULT_MEMORY_BYTES
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.training import TrainingRun
 from biped_bringup.walker import WalkedTicks
-from biped_common.settings import Settings
-from biped_lab.contestant import AnyOptions, Contestant, Entry
+from biped_lab.contestant import (
+    AnyOptions,
+    Contestant,
+    Entry,
+    NoOptions,
+    log_table,
+)
 from learner_node.learner import Learner
 from learner_node.methods import MakeLearner, MethodSettings, make_learner
 from learner_node.problem import Problem
-from msgs_json.end_cause import EndCause
-
-_CAUSES = np.array([str(cause) for cause in EndCause])
-
-
-@dataclass(frozen=True)
-class NoOptions(Settings):
-    """Whose constants all stand in the settings of the run."""
 
 
 class LearnerContestant:
@@ -66,8 +62,7 @@ class LearnerContestant:
 
     def table(self) -> dict[str, NDArray[Any]]:
         """Return one row per episode, by column."""
-        columns = self._run.log.arrays()
-        columns["end_cause"] = _CAUSES[columns["end_cause"]]
+        columns = log_table(self._run.log)
         for name, values in self._figures.items():
             columns[name] = np.array(values, dtype=np.float64)
         return columns
@@ -93,7 +88,6 @@ class LearnerContestant:
 
 
 def learner_entry(
-    label: str,
     module: str,
     options: type[AnyOptions],
     make: Callable[[AnyOptions, MethodSettings, Problem, np.random.Generator], Learner],
@@ -101,7 +95,6 @@ def learner_entry(
     """Return the entry of a learner of one's own.
 
     Args:
-        label: as it stands in tables and figures.
         module: `__name__` of where it is.
         options: its constants.
         make: returns a learner that knows nothing yet.
@@ -115,7 +108,7 @@ def learner_entry(
     ) -> Contestant:
         return _resume(path, partial(make, own))
 
-    return Entry(options, begin, resume, module, label)
+    return Entry(options, begin, resume, module)
 
 
 def _begin(settings: RunSettings, seed: int, make: MakeLearner) -> Contestant:
@@ -133,6 +126,5 @@ BY_SETTING = Entry(
     lambda settings, _, seed: _begin(settings, seed, make_learner),
     lambda path, settings, _, seed: _resume(path, make_learner),
     "biped_bringup.training",
-    "by settings",
 )
 """Whom `learner.method` names: XoL, Q(lambda)."""

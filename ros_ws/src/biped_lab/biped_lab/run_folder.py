@@ -29,10 +29,8 @@ from biped_common.command_line import CommandError
 from biped_common.errors import BipedError
 from biped_common.exclusive_folder import LOCK_FILE, exclusive_folder
 from biped_common.settings import from_mapping
-from biped_lab.code_identity import code_identity
 from biped_lab.contestant import MILESTONES, Contestant, entry
-from biped_lab.study import RunSpec
-from sim_node.engines import ENGINES
+from biped_lab.study import RunSpec, run_code
 
 RUN_FILE, MEMORY_FILE, EPISODES_FILE = "run.json", "memory.npz", "episodes.parquet"
 END_FILE, COST_FILE = "end.json", "cost.json"
@@ -204,10 +202,7 @@ def _is_over(contestant: Contestant, spec: RunSpec) -> bool:
 
 
 def _check_code(folder: Path, spec: RunSpec) -> None:
-    engine = ENGINES[spec.run_settings().sim.engine].module
-    here = code_identity(
-        "biped_bringup.training", engine, entry(spec.contestant).module
-    )
+    here = run_code(spec.contestant, spec.run_settings())
     if here != (spec.code, spec.packages):
         raise RunError(
             f"{folder}: was planned with code {spec.code} and packages "

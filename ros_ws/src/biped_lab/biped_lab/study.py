@@ -41,10 +41,12 @@ from biped_common.settings import (
     overlay,
     to_mapping,
 )
-from biped_lab.code_identity import code_identity
+from biped_lab.code_identity import CodeIdentity, code_identity
 from biped_lab.contestant import UnknownContestantError, entry
 from sim_node.engines import ENGINES
 
+BY_SETTINGS = "by_settings"
+"""The contestant whom the setting `learner.method` names."""
 Goal = Literal["schedule", "greedy"]
 Value = int | float | str | bool
 Name = Annotated[str, Meta(pattern=r"^[^\n/\\]{1,80}\Z")]
@@ -101,7 +103,7 @@ class StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     preset: str = "paper"
     settings: dict[str, Any] = {}
     goal: Goal = "schedule"
-    contestant: str = "by_settings"
+    contestant: str = BY_SETTINGS
     options: dict[str, Any] = {}
     axes: dict[Name, Axis] = {}
     arms: dict[Name, ArmChanges | None] = {}
@@ -172,8 +174,6 @@ class Study:
             options = to_mapping(from_mapping(who.options, arm.options))
         except (UnknownContestantError, SettingsError) as error:
             raise StudyError(f"{self.name}: arm {arm.name!r}: {error}") from None
-        engine = ENGINES[arm.settings.sim.engine].module
-        identity = code_identity("biped_bringup.training", engine, who.module)
         return RunSpec(
             arm.contestant,
             options,
@@ -181,8 +181,14 @@ class Study:
             seed,
             self.file.goal,
             self.file.most_episodes,
-            *identity,
+            *run_code(arm.contestant, arm.settings),
         )
+
+
+def run_code(contestant: str, settings: RunSettings) -> CodeIdentity:
+    """Return the identity of the code that carries out a run."""
+    engine = ENGINES[settings.sim.engine].module
+    return code_identity("biped_bringup.training", engine, entry(contestant).module)
 
 
 def study_names() -> list[str]:

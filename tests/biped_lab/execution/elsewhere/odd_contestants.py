@@ -64,5 +64,4 @@ ODD = Entry(
     lambda settings, own, seed: Odd(own.kind, seed, []),
     lambda path, settings, own, seed: Odd(own.kind, seed, np.load(path).tolist()),
     "odd_contestants",
-    "odd",
 )

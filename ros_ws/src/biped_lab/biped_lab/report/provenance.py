@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 
-from biped_lab.results import StudyResults
+from biped_lab.results import PlannedArm, StudyResults
 from biped_lab.run_folder import RunError, read_spec
+from biped_lab.study import BY_SETTINGS
 
 
 def provenance(results: StudyResults) -> list[tuple[str, str]]:
@@ -35,8 +36,16 @@ def provenance(results: StudyResults) -> list[tuple[str, str]]:
         found.append(("not known", f"of {silent} runs, whose run.json is not there"))
     for arm in study.arms:
         changes = ", ".join(f"{key} = {value}" for key, value in arm.settings.items())
-        found.append((arm.name, changes or "the preset paper as it is"))
+        found.append((arm.name, f"{_who(arm)}{changes or 'the preset paper as it is'}"))
     return [(name, text) for name, text in found if text]
+
+
+def _who(arm: PlannedArm) -> str:
+    """Return who learns, unless the settings say it."""
+    if arm.contestant == BY_SETTINGS:
+        return ""
+    options = ", ".join(f"{key} = {value}" for key, value in arm.options.items())
+    return f"{arm.contestant} ({options or 'its defaults'}); "
 
 
 def _counted(found: Counter[str]) -> str:

@@ -81,7 +81,6 @@ class EpisodicProfitSharing(TabularLearner):
 
 
 ENTRY = learner_entry(
-    "episodic profit sharing",
     __name__,
     EpisodicSettings,
     lambda options, settings, problem, rng: EpisodicProfitSharing(

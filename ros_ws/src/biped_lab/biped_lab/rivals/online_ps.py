@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from biped_common.settings import Settings, setting
+from biped_common.settings import setting
 from biped_lab.learner_contestant import learner_entry
+from biped_lab.rivals.episodic_ps import EpisodicSettings
 from biped_lab.rivals.tabular import TabularLearner
 from learner_node.problem import Problem
 from learner_node.states import StateSettings
@@ -24,21 +25,15 @@ from learner_node.xol.queue import DecisionQueue
 
 
 @dataclass(frozen=True)
-class OnlineSettings(Settings):
-    """Constants of online profit sharing."""
+class OnlineSettings(EpisodicSettings):
+    """Constants of online profit sharing: gamma is that of the trace."""
 
-    discount: float = setting(
-        0.98, "per decision", "gamma of the eligibility trace", above=0.0, upper=1.0
-    )
     queue_length: int = setting(
         150,
         "decisions",
         "decisions that a reward reaches back",
         lower=1,
         upper=100_000,
-    )
-    base_weight: float = setting(
-        100.0, "", "added to every weight in the roulette, as in XoL", above=0.0
     )
 
 
@@ -98,7 +93,6 @@ class OnlineProfitSharing(TabularLearner):
 
 
 ENTRY = learner_entry(
-    "online profit sharing",
     __name__,
     OnlineSettings,
     lambda options, settings, problem, rng: OnlineProfitSharing(

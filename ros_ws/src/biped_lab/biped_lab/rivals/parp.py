@@ -179,7 +179,6 @@ class Parp(EpisodicProfitSharing):
 
 
 ENTRY = learner_entry(
-    "PARP",
     __name__,
     ParpSettings,
     lambda options, settings, problem, rng: Parp(

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from biped_lab.learner_contestant import NoOptions, learner_entry
+from biped_lab.contestant import NoOptions
+from biped_lab.learner_contestant import learner_entry
 from learner_node.memory import Arrays, check_memory
 from learner_node.problem import Problem
 
@@ -78,7 +79,6 @@ class RandomChoice:
 
 
 ENTRY = learner_entry(
-    "random",
     __name__,
     NoOptions,
     lambda options, settings, problem, rng: RandomChoice(problem, rng),

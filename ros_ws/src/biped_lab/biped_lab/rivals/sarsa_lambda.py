@@ -17,29 +17,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from biped_common.settings import Settings, setting
 from biped_lab.learner_contestant import learner_entry
 from biped_lab.rivals.tabular import TabularLearner
 from learner_node.problem import Problem
+from learner_node.q_lambda import QLambdaSettings
 from learner_node.states import StateSettings, doubled
 
 
 @dataclass(frozen=True)
-class SarsaSettings(Settings):
-    """Constants of SARSA(lambda)."""
-
-    learning_rate: float = setting(0.2, "", "alpha", above=0.0, upper=1.0)
-    discount: float = setting(0.98, "per decision", "gamma", above=0.0, upper=1.0)
-    trace_decay: float = setting(
-        0.95, "per decision", "lambda, beside gamma", lower=0.0, upper=1.0
-    )
-    exploration: float = setting(
-        0.01,
-        "",
-        "epsilon: share of choices, per component, that are left to chance",
-        lower=0.0,
-        upper=1.0,
-    )
+class SarsaSettings(QLambdaSettings):
+    """Constants of SARSA(lambda): those of Q(lambda)."""
 
 
 class SarsaLambda(TabularLearner):
@@ -117,7 +104,6 @@ class SarsaLambda(TabularLearner):
 
 
 ENTRY = learner_entry(
-    "SARSA(λ)",
     __name__,
     SarsaSettings,
     lambda options, settings, problem, rng: SarsaLambda(

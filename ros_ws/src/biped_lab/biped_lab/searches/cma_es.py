@@ -104,7 +104,5 @@ def _make(
     return CmaEs(own, space, rng)
 
 
-WHOLE = search_entry("CMA-ES", __name__, CmaEsOptions, _make)
-INCREMENTAL = search_entry(
-    "CMA-ES, incremental", __name__, CmaEsOptions, _make, incremental=True
-)
+WHOLE = search_entry(__name__, CmaEsOptions, _make)
+INCREMENTAL = search_entry(__name__, CmaEsOptions, _make, incremental=True)

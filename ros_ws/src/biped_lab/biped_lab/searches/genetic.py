@@ -92,7 +92,6 @@ def _loss(individual: _Individual) -> float:
 
 
 ENTRY = search_entry(
-    "genetic algorithm",
     __name__,
     GeneticOptions,
     lambda own, _, space, rng: Genetic(own, space, rng),

@@ -30,7 +30,7 @@ from biped_common.timing import (
     TICKS_PER_LEARNING_TICK,
     seconds,
 )
-from biped_lab.learner_contestant import NoOptions
+from biped_lab.contestant import NoOptions
 from biped_lab.searches.plan import COMPONENTS, PlanSpace
 from biped_lab.searches.search_contestant import search_entry
 from biped_lab.searches.searcher import Walked
@@ -115,7 +115,6 @@ class LinearProgram:
 
 
 ENTRY = search_entry(
-    "linear programming",
     __name__,
     NoOptions,
     lambda _, settings, space, rng: LinearProgram(settings, space),

@@ -27,7 +27,7 @@ from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import WalkedTicks
 from biped_common.seeds import learner_stream, robot_stream
 from biped_common.settings import SettingsError, to_mapping
-from biped_lab.contestant import AnyOptions, Contestant, Entry
+from biped_lab.contestant import AnyOptions, Contestant, Entry, log_table
 from biped_lab.searches.plan import COMPONENTS, PlanSpace
 from biped_lab.searches.searcher import Searcher, Walked
 from learner_node.checkpoint import (
@@ -46,7 +46,6 @@ from msgs_json.observation import Observation
 
 Make = Callable[[RunSettings, PlanSpace, np.random.Generator], Searcher]
 
-_CAUSES = np.array([str(cause) for cause in EndCause])
 _COMPLETED = list(EndCause).index(EndCause.COMPLETED)
 _PLANS, _LOG = "plans", "log/"
 
@@ -165,9 +164,7 @@ class SearchContestant:
 
     def table(self) -> dict[str, NDArray[Any]]:
         """Return one row per episode, by column."""
-        columns = self._log.arrays()
-        columns["end_cause"] = _CAUSES[columns["end_cause"]]
-        return columns
+        return log_table(self._log)
 
     def figures(self) -> dict[str, Any]:
         """Return hashes and times, the same in every run."""
@@ -262,7 +259,6 @@ class SearchContestant:
 
 
 def search_entry(
-    label: str,
     module: str,
     options: type[AnyOptions],
     make: Callable[[AnyOptions, RunSettings, PlanSpace, np.random.Generator], Searcher],
@@ -272,7 +268,6 @@ def search_entry(
     """Return the entry of a searcher.
 
     Args:
-        label: as it stands in tables and figures.
         module: `__name__` of where it is.
         options: its constants.
         make: returns a searcher that was told nothing yet.
@@ -295,7 +290,7 @@ def search_entry(
     ) -> Contestant:
         return SearchContestant.resume(path, settings, seed, kind(own))
 
-    return Entry(options, begin, resume, module, label)
+    return Entry(options, begin, resume, module)
 
 
 def _task(settings: RunSettings, walk_ticks: int, incremental: bool) -> WalkTask:

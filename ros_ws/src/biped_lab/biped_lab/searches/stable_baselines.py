@@ -33,18 +33,15 @@ from biped_bringup.walker import WalkedTicks
 from biped_common.errors import BipedError
 from biped_common.seeds import learner_stream
 from biped_common.settings import to_mapping
-from biped_lab.contestant import Contestant, Entry
-from biped_lab.learner_contestant import NoOptions
+from biped_lab.contestant import Contestant, Entry, NoOptions, log_table
 from biped_lab.waist_env import BipedWaistEnv
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from learner_node.memory import arrays_sha256
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.task import End, WalkTask
-from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 
-_CAUSES = np.array([str(cause) for cause in EndCause])
 _FLAG = 10.0
 _Step = tuple[NDArray[np.float64], float, bool, bool, dict[str, Any]]
 
@@ -210,9 +207,7 @@ class PpoContestant:
 
     def table(self) -> dict[str, NDArray[Any]]:
         """Return one row per episode, by column; the reward is the task's own."""
-        columns = self._log.arrays()
-        columns["end_cause"] = _CAUSES[columns["end_cause"]]
-        return columns
+        return log_table(self._log)
 
     def figures(self) -> dict[str, Any]:
         """Return hashes and times, the same in every run."""
@@ -280,4 +275,4 @@ def _resume(path: Path, settings: RunSettings, _: NoOptions, seed: int) -> Conte
     return PpoContestant.resume(path, settings, seed)
 
 
-ENTRY = Entry(NoOptions, _begin, _resume, __name__, "PPO (Stable-Baselines3)")
+ENTRY = Entry(NoOptions, _begin, _resume, __name__)

@@ -56,7 +56,6 @@ class TailSearch:
 
 
 ENTRY = search_entry(
-    "tail search",
     __name__,
     TailSearchOptions,
     lambda own, _, space, rng: TailSearch(own, space, rng),
