@@ -89,7 +89,7 @@ def test_what_decides_a_run_is_in_its_address(change: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     "change",
     [
-        {"title": "another", "claim": "none", "figure": "grid"},
+        {"title": "another", "claim": "none", "figure": "fixed states"},
         {"seeds": {"first": 7, "count": 5}},
         # A setting by its default is the same setting.
         {"settings": {"gait.steps": 5}},
@@ -146,6 +146,7 @@ def test_the_paper_asks_for_these_k_and_lt() -> None:
         ({"titel": "x"}, "unknown field `titel`"),
         ({"most_episodes": 0}, "`int` >= 1 - at `$.most_episodes`"),
         ({"seeds": {"first": 1}}, "missing required field `count`"),
+        ({"figure": "grid"}, "Invalid enum value 'grid' - at `$.figure`"),
         ({"goal": "walk"}, "Invalid enum value 'walk' - at `$.goal`"),
         ({"axes": {}, "arms": {}, "baseline": None}, "neither axes nor arms"),
         ({"preset": "slow"}, "arm 'K = 1': preset = 'slow': must be one of"),

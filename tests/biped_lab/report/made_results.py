@@ -51,7 +51,7 @@ def made_results(
     """Write the episodes of runs, and return the study's results."""
     told = {
         "title": "Made up", "paper": "Figure 2", "claim": "Fixed mode is faster.",
-        "figure": "strategy1", "baseline": "K = none" if factors is BY_K else None,
+        "figure": "episodes", "baseline": "K = none" if factors is BY_K else None,
     }  # fmt: skip
     study = PlannedStudy(
         name="made",

@@ -55,7 +55,7 @@ def strategy_2(tmp_path: Path) -> FinishedRuns:
             fixed=0.0 if factors["strategy"] == "none" else 0.6,
         )
     ]
-    return finished_runs(made_results(tmp_path, runs, BY_LT, figure="strategy2"))
+    return finished_runs(made_results(tmp_path, runs, BY_LT, figure="episodes"))
 
 
 def dots(axes: Iterable[Axes], kind: str) -> list[Line2D]:

@@ -27,7 +27,7 @@ from biped_lab.run_folder import (
     read_cost,
     read_end,
 )
-from biped_lab.study import Goal, Study, Value, changed
+from biped_lab.study import Goal, Leading, Study, Value, changed
 
 STUDY_FILE, RUNS = "study.json", "runs"
 STATE_FIGURES = ("basis_states", "fixed_states", "penalty_states")
@@ -57,7 +57,7 @@ class PlannedStudy(msgspec.Struct, frozen=True):
     title: str
     paper: str
     claim: str
-    figure: str
+    figure: Leading
     goal: Goal
     most_episodes: int
     baseline: str | None

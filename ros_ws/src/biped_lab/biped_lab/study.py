@@ -3,7 +3,7 @@
 A study is a YAML file, `studies/*.yaml` or one of a user's own:
 
     title, paper, claim   what is asked, where in the paper, and what is said there
-    figure                what the report draws beside the learning curves
+    figure                what the report shows first
     preset, settings      of all runs; settings by dotted key
     goal, most_episodes   a run has arrived with this milestone; else it is censored
     seeds                 first and count; arms are paired by seed
@@ -48,6 +48,7 @@ from sim_node.engines import ENGINES
 BY_SETTINGS = "by_settings"
 """The contestant whom the setting `learner.method` names."""
 Goal = Literal["schedule", "greedy"]
+Leading = Literal["episodes", "learning time", "fixed states"]
 Value = int | float | str | bool
 Name = Annotated[str, Meta(pattern=r"^[^\n/\\]{1,80}\Z")]
 Seeds = Annotated[int, Meta(ge=1, le=10_000)]
@@ -99,7 +100,7 @@ class StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     seeds: SeedRange
     paper: str = ""
     claim: str = ""
-    figure: str = "curves"
+    figure: Leading = "episodes"
     preset: str = "paper"
     settings: dict[str, Any] = {}
     goal: Goal = "schedule"

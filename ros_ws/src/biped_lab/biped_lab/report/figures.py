@@ -22,11 +22,11 @@ from biped_lab.report.walks import draw_end_causes, draw_replay, never_interrupt
 from biped_lab.statistics.comparison import FEWEST_RUNS
 
 _LEADING = {
-    "strategy1_fixed": FIXED_SHARE,
-    "strategy2_time": SIMULATED,
-    "strategy2_fixed": FIXED_SHARE,
+    "episodes": EPISODES,
+    "learning time": SIMULATED,
+    "fixed states": FIXED_SHARE,
 }
-"""Of what the study's own figure is; of the others, the first one in the list is."""
+"""Of what the study's own figure is."""
 
 
 class ReportFigure(NamedTuple):
@@ -61,9 +61,7 @@ def _quantities(
 ) -> Iterator[ReportFigure]:
     study = finished.results.study
     columns = [EPISODES, SIMULATED, FIXED_SHARE]
-    leading = _LEADING.get(study.figure)
-    if leading is not None:
-        columns.sort(key=lambda column: column != leading)
+    columns.sort(key=lambda column: column != _LEADING[study.figure])
     baseline = study.baseline
     together = baseline in finished.arms and not finished.arrangement.grouped
     for column in columns:
