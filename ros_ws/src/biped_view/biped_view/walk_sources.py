@@ -16,6 +16,11 @@ from biped_view.walked_here import NoWalkError, walk_of_memory
 _BAG_SUFFIX, _MEMORY_SUFFIX = ".mcap", ".npz"
 
 
+def is_bag(path: Path) -> bool:
+    """Return whether a path is a bag, or has been begun as one."""
+    return path.suffix == _BAG_SUFFIX or (path.is_dir() and holds_bag(path))
+
+
 def load_walk(path: Path, walk: int | None = None) -> WalkRecord:
     """Return a walk of a bag, or the frozen greedy walk of a memory.
 
@@ -40,7 +45,7 @@ def read_walk(path: Path, walk: int | None = None) -> LoadedWalk:
     Raises:
         BipedError: there is no walk there; one line that says why.
     """
-    if path.suffix == _BAG_SUFFIX or (path.is_dir() and holds_bag(path)):
+    if is_bag(path):
         return walk_of_bag(path, walk)
     if not path.exists():
         raise NoWalkError(f"{path}: no such file or folder")
