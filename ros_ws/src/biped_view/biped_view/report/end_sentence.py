@@ -38,7 +38,11 @@ def _completed(record: WalkRecord, _: RunSettings) -> str:
             f"The walk reached its target time of {walked:g} s; the whole walk takes "
             f"{whole:g} s."
         )
-    return f"The walk was completed: all {whole:g} s of it."
+    sentence = f"The walk was completed, all {whole:g} s of it"
+    if record.result is None:
+        return f"{sentence}."
+    peak, limit = 1000 * record.result.peak_zmp_error_m, 1000 * record.zmp_limit_m
+    return f"{sentence}; its ZMP error was {peak:.2f} of {limit:g} mm at most."
 
 
 def _zmp_error(record: WalkRecord, _: RunSettings) -> str:

@@ -22,7 +22,7 @@ def key_figures(walk: LoadedWalk) -> list[tuple[str, str]]:
         zmp, speed = result.peak_zmp_error_m, result.peak_joint_velocity_rad_s
     found = [
         ("walked", f"{seconds(record.ticks):.2f} of {seconds(record.walk_ticks):g} s"),
-        ("largest ZMP error", f"{1000 * zmp:.1f} of {1000 * record.zmp_limit_m:g} mm"),
+        ("largest ZMP error", f"{1000 * zmp:.2f} of {1000 * record.zmp_limit_m:g} mm"),
         (
             "fastest joint",
             f"{speed:.2f} of {record.robot.velocity_limit_rad_s:.1f} rad/s",
@@ -32,10 +32,10 @@ def key_figures(walk: LoadedWalk) -> list[tuple[str, str]]:
     if result is not None and result.cost is not None:
         found.append(("T_err", f"{result.cost.total:.3f}"))
     if walk.session is not None:
-        found.append(("episodes learned", str(walk.session.episodes)))
-        modes = learned_states(walk.session).modes
-        counts = ", ".join(f"{which.sum()} {mode}" for mode, which in modes.items())
-        found.append(("states", counts))
+        states = learned_states(walk.session)
+        fixed, count = states.fixed.sum(), len(states.fixed)
+        learned = f"{walk.session.episodes} episodes, {fixed} of {count} states fixed"
+        found.append(("learned", learned))
     return [(name, text) for name, text in found if "nan" not in text]
 
 
@@ -71,7 +71,7 @@ def _largest_torque(record: WalkRecord) -> str:
     if np.isnan(peak):
         return "nan"
     joint = int(np.argwhere(share == peak)[0, 1])
-    return f"{peak:.0%} of its limit, {JOINT_NAMES[joint].replace('_', ' ')}"
+    return f"{peak:.0%} of limit, {JOINT_NAMES[joint].replace('_', ' ')}"
 
 
 def _peak(rows: Rows) -> float:

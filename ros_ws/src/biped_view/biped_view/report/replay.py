@@ -24,7 +24,8 @@ from biped_view.walk_record import WalkRecord
 
 TICKS_PER_FRAME: Final = 20
 """25 frames a second, as the torso's pose is recorded."""
-_EYE_M, _AHEAD_M, _HEIGHT_M = (1.35, -1.95, 1.15), 0.15, 0.45
+_EYE_M, _HEIGHT_M = (0.85, -1.45, 0.75), 0.45
+"""Of the camera, from the middle of the way, and what it looks at."""
 _DATA = re.compile(r'window\.__VISER_EMBED_DATA__="([A-Za-z0-9+/=]*)"')
 
 
@@ -76,7 +77,7 @@ def _recorded(
     robot = Robot(record.robot)
     scene = server.scene
     scene.set_up_direction("+z")
-    middle = float(np.nanmean(record.torso_position_m[frames][:, 0])) + _AHEAD_M
+    middle = float(np.mean(record.torso_position_m[frames, 0]))
     server.initial_camera.position = (middle + _EYE_M[0], _EYE_M[1], _EYE_M[2])
     server.initial_camera.look_at = (middle, 0.0, _HEIGHT_M)
     floor = FloorScene(scene, record.robot, record.zmp_limit_m, theme)
