@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,7 @@ from biped_description.robot import Robot
 from biped_view.walk_record import LoadedWalk, Rows, WalkRecord
 from learner_node.walking.session import LearningSession
 from learner_node.walking.walks import greedy_walk, static_walk
+from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.control_tick import ControlTick
@@ -24,6 +27,8 @@ from trajectory_node.waist_reference import WaistReference
 
 _SEED = 0
 """Of the disturbances, if any: as `biped walk` draws them where it is given no seed."""
+_PACKAGES = ("biped", "numpy", "numba", "pybullet")
+"""Whose versions can change a walk's last bit."""
 
 
 class NoWalkError(BipedError, ValueError):
@@ -50,12 +55,15 @@ def walk_of_memory(path: Path) -> LoadedWalk:
         "seed of the run": str(run.seed),
         "written by": ", ".join(f"{name} {at}" for name, at in run.written_by.items()),
     }
+    completed = record.end_cause is EndCause.COMPLETED
     return LoadedWalk(
-        "The frozen greedy walk of a memory",
+        "The learned walk"
+        if session.learned and completed
+        else "The frozen greedy walk of a memory",
         record,
         settings,
         session,
-        {name: text for name, text in facts.items() if text} | _hash_of(record),
+        {name: text for name, text in facts.items() if text} | _facts(record),
     )
 
 
@@ -66,7 +74,7 @@ def walk_without_learner(settings: RunSettings) -> LoadedWalk:
         NoWalkError: the walk ended before its first control tick.
     """
     record = _walked(settings, None)
-    return LoadedWalk("The static walk", record, settings, facts=_hash_of(record))
+    return LoadedWalk("The static walk", record, settings, facts=_facts(record))
 
 
 def _walked(settings: RunSettings, session: LearningSession | None) -> WalkRecord:
@@ -174,6 +182,13 @@ def _record(
     )
 
 
-def _hash_of(record: WalkRecord) -> dict[str, str]:
+def _facts(record: WalkRecord) -> dict[str, str]:
     assert record.result is not None
-    return {"trajectory SHA-256": record.result.trajectory_sha256}
+    found = []
+    for name in _PACKAGES:
+        with suppress(PackageNotFoundError):  # an engine that is not used here
+            found.append(f"{name} {version(name)}")
+    return {
+        "walked here with": ", ".join(found),
+        "trajectory SHA-256": record.result.trajectory_sha256,
+    }

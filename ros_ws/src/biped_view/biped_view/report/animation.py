@@ -41,7 +41,7 @@ _SWATCH_PX: Final = 20
 """High is a colour that the palette must have, however little is drawn in it."""
 _MP4_TICKS: Final = 20
 _LETTERS_PER_LINE: Final = 62
-_AWAY_LEGS, _HEIGHT_ANGLE_DEG = 3.4, 36.0
+_AWAY_LEGS, _LEAST_WAY_LEGS, _HEIGHT_ANGLE_DEG = 3.0, 0.8, 35.0
 _ANGLES = np.linspace(0.0, 2 * np.pi, 60)
 _CIRCLE = np.column_stack((np.cos(_ANGLES), np.sin(_ANGLES)))
 _DOT_M: Final = 0.015
@@ -144,14 +144,18 @@ def _pictures(walk: LoadedWalk, ticks_per_frame: int) -> Iterator[Image.Image]:
 
 
 def _camera(record: WalkRecord, rows: list[int]) -> Camera:
-    """Return a camera that stands still and sees the whole way."""
+    """Return a camera that stands still and sees the whole way.
+
+    Short walks are seen from as far as a whole one, so that they can be compared.
+    """
     leg_m = record.robot.stretched_leg_length_m
     x_m = record.torso_position_m[rows, 0]
-    middle = float(x_m.min() + x_m.max()) / 2
-    away_m = _AWAY_LEGS * leg_m + float(np.ptp(x_m))
+    way_m = max(float(np.ptp(x_m)), _LEAST_WAY_LEGS * leg_m)
+    middle = float(x_m.min()) + way_m / 2
+    away_m = _AWAY_LEGS * leg_m + way_m / 2
     return Camera(
         (middle + 0.55 * away_m, -away_m, leg_m + 0.6 * away_m),
-        (middle, 0.0, 0.72 * leg_m),
+        (middle - 0.1 * leg_m, 0.0, 0.72 * leg_m),  # room for words on the left
         _HEIGHT_ANGLE_DEG,
         (_SIZE_PX[0] * _FINER, _SIZE_PX[1] * _FINER),
     )
@@ -198,7 +202,7 @@ class _Floor:
         record, draw = self._record, ImageDraw.Draw(picture)
         reference, measured = record.zmp_reference_m[row], record.zmp_m[row]
         ring = reference + record.zmp_limit_m * _CIRCLE
-        self._line(draw, ring, _PAPER, 5)
+        self._line(draw, ring, _PAPER, 6)
         self._line(draw, ring, LIGHT.limit, 3)
         for at, colour in ((reference, LIGHT.zmp_reference), (measured, LIGHT.zmp)):
             draw.polygon(self._pixels(at + 1.4 * _DOT_M * _CIRCLE), fill=_PAPER)

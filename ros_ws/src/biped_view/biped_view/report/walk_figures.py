@@ -16,7 +16,6 @@ from biped_lab.report.theme import (
     BLUE,
     GREEN,
     GREY,
-    ORANGE,
     PURPLE,
     SKY,
     VERMILLION,
@@ -79,7 +78,7 @@ def draw_zmp_error(record: WalkRecord) -> Figure:
     time_s, error = _known_at(_MM * record.zmp_error_m)
     axes.axhline(0.0, color=GREY, linewidth=0.6)
     axes.plot(time_s, error[:, 0], color=BLUE, linewidth=_THIN, label="x, forward")
-    axes.plot(time_s, error[:, 1], color=ORANGE, linewidth=_THIN, label="y, left")
+    axes.plot(time_s, error[:, 1], color=GREEN, linewidth=_THIN, label="y, left")
     axes.plot(time_s, np.hypot(*error.T), color=VERMILLION, label="norm")
     limit = _MM * record.zmp_limit_m
     axes.axhline(
@@ -104,21 +103,25 @@ def draw_waist(record: WalkRecord) -> Figure:
         panel.plot(time_s, waist_m, color=GREEN, label="corrected")
         panel.set_ylabel(name)
         _shade_phases(panel, record)
-    ways[0].legend(loc="upper left", ncols=2)
     chosen = _MM * record.correction_m
     shift = _MM * (record.waist_m - record.static_waist_m)[:, :2]
     shifted.axhline(0.0, color=GREY, linewidth=0.6)
-    for axis, (colour, name) in enumerate(((BLUE, "dx"), (ORANGE, "dy"))):
+    for axis, (colour, name) in enumerate(((BLUE, "dx"), (GREEN, "dy"))):
         time_s, steps = _known_at(chosen[:, axis : axis + 1])
         shifted.plot(time_s, steps, color=colour, linewidth=0.6, alpha=0.5)
         time_s, smooth = _known_at(shift[:, axis : axis + 1])
         shifted.plot(time_s, smooth, color=colour, label=name)
     _at_least(shifted, _LEAST_SHIFT_MM)
     shifted.set_ylabel("correction [mm]")
-    shifted.legend(loc="upper left", ncols=2)
     _shade_phases(shifted, record)
     shifted.set_xlabel("time [s]")
     figure.align_ylabels()
+    handles = [
+        handle
+        for panel in (ways[0], shifted)
+        for handle in panel.get_legend_handles_labels()[0]
+    ]
+    figure.legend(handles=handles, loc="outside upper left", ncols=4)
     return figure
 
 
