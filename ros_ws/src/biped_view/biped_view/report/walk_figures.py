@@ -106,7 +106,7 @@ def draw_waist(record: WalkRecord) -> Figure:
     chosen = _MM * record.correction_m
     shift = _MM * (record.waist_m - record.static_waist_m)[:, :2]
     shifted.axhline(0.0, color=GREY, linewidth=0.6)
-    for axis, (colour, name) in enumerate(((BLUE, "dx"), (GREEN, "dy"))):
+    for axis, (colour, name) in enumerate(((BLUE, "dx"), (VERMILLION, "dy"))):
         time_s, steps = _known_at(chosen[:, axis : axis + 1])
         shifted.plot(time_s, steps, color=colour, linewidth=0.6, alpha=0.5)
         time_s, smooth = _known_at(shift[:, axis : axis + 1])
