@@ -10,4 +10,8 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
+    package_data={NAME: ["report/*.j2"]},
+    entry_points={
+        "biped.verbs": ["report = biped_view.verbs.report:add_parser"],
+    },
 )

@@ -5,12 +5,15 @@ A memory is walked in this process, a bag is read; page and report see the same.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from biped_bringup.run_settings import RunSettings
 from biped_description.settings import RobotSettings
+from learner_node.walking.session import LearningSession
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 
@@ -77,3 +80,21 @@ class WalkRecord:
     def zmp_error_m(self) -> Rows:
         """(n, 2) measured minus planned."""
         return self.zmp_m - self.zmp_reference_m
+
+
+@dataclass(frozen=True)
+class LoadedWalk:
+    """A walk, and what else its source tells of it."""
+
+    title: str
+    """What was walked, in a few words."""
+    record: WalkRecord
+    settings: RunSettings
+    """Of the whole run."""
+    session: LearningSession | None = None
+    """The learner that chose the corrections, with its log of episodes; None where
+    nobody chose, or the source does not hold what was known then."""
+    facts: Mapping[str, str] = field(default_factory=dict)
+    """Where it comes from, by name: file, command, seed, versions, hashes."""
+    remarks: tuple[str, ...] = ()
+    """Sentences on what the source does not hold."""

@@ -1,0 +1,1 @@
+"""The walk report: one page that asks for nothing, figures, and an animation."""
