@@ -20,6 +20,7 @@ ROSDEP_KEYS = {
     "argcomplete": "python3-argcomplete",
     "gymnasium": "python3-gymnasium-pip",
     "jinja2": "python3-jinja2",
+    "PIL": "python3-pil",
     "matplotlib": "python3-matplotlib",
     "numpy": "python3-numpy",
     "pandas": "python3-pandas",
@@ -30,6 +31,7 @@ ROSDEP_KEYS = {
 }
 """Of what is imported from neither ROS nor the standard library."""
 FROM_PIP = {
+    "av": "av",
     "cma": "cma",
     "distributed": "distributed",
     "lifelines": "lifelines",
@@ -43,6 +45,7 @@ FROM_PIP = {
     "stable_baselines3": "stable-baselines3",
     "submitit": "submitit",
     "threadpoolctl": "threadpoolctl",
+    "viser": "viser",
     "zstandard": "zstandard",
 }
 """Named in a comment of package.xml: rosdep has no key, or none for Jazzy's Ubuntu."""

@@ -34,6 +34,7 @@ def written(walked_twice, tmp_path_factory):
     return folder
 
 
+@pytest.mark.skipif(not Path(_CHROMIUM).exists(), reason="no Chromium here")
 def test_the_page_opens_offline_without_a_request_or_an_error(written):
     page_address = (written / "report.html").as_uri()
     requests, errors, told = [], [], []
