@@ -9,7 +9,7 @@ from tests.biped_view.recorded_walk import POSE_EVERY_TICKS, write_bag
 
 from biped_bag.errors import BagError
 from biped_common.errors import BipedError
-from biped_view.walk_sources import load_walk, read_walk
+from biped_view.walk_sources import read_walk
 from learner_node.checkpoint import CheckpointError
 from msgs_json import topics
 
@@ -18,7 +18,7 @@ _TORSO = ("torso_position_m", "torso_quaternion")
 
 @pytest.fixture(scope="module")
 def both(walked_twice):
-    return load_walk(walked_twice.memory), load_walk(walked_twice.bag)
+    return read_walk(walked_twice.memory).record, read_walk(walked_twice.bag).record
 
 
 def test_bag_and_memory_show_the_same_walk_to_the_last_bit(both):
@@ -69,7 +69,7 @@ def test_a_folder_of_a_run_is_its_memory_with_its_learner(walked_twice):
 
 def test_a_bag_without_poses_has_no_pose(walked_twice, tmp_path):
     bag = write_bag(tmp_path / "bag", walked_twice.run, without=["/biped/torso_pose"])
-    record = load_walk(bag)
+    record = read_walk(bag).record
     assert np.isnan(record.torso_position_m).all()
     assert np.isfinite(record.zmp_m).all()
 
@@ -82,7 +82,7 @@ def test_a_recording_that_ends_before_the_walk_has_no_end_cause(walked_twice, tm
     ]
     try:
         run.messages = whole[:cut]
-        record = load_walk(write_bag(tmp_path / "bag", run))
+        record = read_walk(write_bag(tmp_path / "bag", run)).record
     finally:
         run.messages = whole
     assert record.end_cause is None
@@ -94,18 +94,18 @@ def test_a_recording_that_ends_before_the_walk_has_no_end_cause(walked_twice, tm
 def test_a_bag_without_what_a_walk_is_seen_by_is_refused(walked_twice, tmp_path, topic):
     bag = write_bag(tmp_path / "bag", walked_twice.run, without=[topic.name])
     with pytest.raises(BagError, match=f"has no {topic.name}"):
-        load_walk(bag)
+        read_walk(bag)
 
 
 def test_a_bag_that_does_not_say_which_robot_walked_is_refused(walked_twice, tmp_path):
     bag = write_bag(tmp_path / "bag", walked_twice.run, records=False)
     with pytest.raises(BagError, match=r"has no record biped\.run"):
-        load_walk(bag)
+        read_walk(bag)
 
 
 def test_a_walk_that_is_not_in_the_bag_is_refused(walked_twice):
     with pytest.raises(BagError, match="has no walk 7; it has 1 walks"):
-        load_walk(walked_twice.bag, 7)
+        read_walk(walked_twice.bag, 7)
 
 
 def test_a_bag_whose_recorder_was_killed_is_sent_to_recover(walked_twice, tmp_path):
@@ -116,7 +116,7 @@ def test_a_bag_whose_recorder_was_killed_is_sent_to_recover(walked_twice, tmp_pa
     with file.open("r+b") as stream:
         stream.truncate(file.stat().st_size // 2)
     with pytest.raises(BagError, match="biped bag recover") as raised:
-        load_walk(bag)
+        read_walk(bag)
     assert "\n" not in str(raised.value)
 
 
@@ -127,7 +127,7 @@ def test_a_memory_of_another_version_is_refused(walked_twice, tmp_path):
     assert content.count(text) == 1
     old.write_bytes(content.replace(text, '"version": 9'.encode("utf-32-le")))
     with pytest.raises(CheckpointError):
-        load_walk(old)
+        read_walk(old)
 
 
 @pytest.mark.parametrize(
@@ -147,5 +147,5 @@ def test_what_holds_no_walk_is_refused_in_one_line(tmp_path, name, content, reas
         path.write_bytes(content)
     source = path.parent if "/" in name else path
     with pytest.raises(BipedError, match=reason) as raised:
-        load_walk(source)
+        read_walk(source)
     assert "\n" not in str(raised.value)

@@ -10,7 +10,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
-    package_data={NAME: ["studies/*.yaml", "report/*.j2"]},
+    package_data={NAME: ["studies/*.yaml", "report/*.css", "report/*.j2"]},
     entry_points={
         "biped.verbs": ["lab = biped_lab.verbs.lab:add_parser"],
         "biped.lab_verbs": [

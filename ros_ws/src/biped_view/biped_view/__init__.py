@@ -1,1 +1,1 @@
-"""The live page and the walk report: what there is to see of a walk."""
+"""What there is to see of a walk: the walk report."""

@@ -48,18 +48,7 @@ class FloorScene:
         """
         self._scene, self._robot, self._name = scene, robot, name
         self._zmp_limit_m, self._theme = zmp_limit_m, theme
-        self._paths: dict[str, viser.LineSegmentsHandle] = {}
         self._soles: Array | None = None
-        self.paint(theme)
-
-    def paint(self, theme: Theme) -> None:
-        """Draw in the colours of a theme, anew if need be."""
-        self._theme = theme
-        scene, name = self._scene, self._name
-        for path in self._paths.values():
-            path.remove()
-        self._paths.clear()
-        self._soles = None
         scene.add_grid(
             "/floor",
             infinite_grid=True,
@@ -151,26 +140,15 @@ class FloorScene:
         """Draw a path of the waist.
 
         Args:
-            which: a field of the theme: "static_waist", "waist" or "waist_ahead".
+            which: a field of the theme: "static_waist" or "waist".
             points_m: (n, 3) on the way; with fewer than two nothing is drawn.
         """
         points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
-        path = self._paths.get(which)
-        if len(points) < 2:
-            if path is not None:
-                path.visible = False
-            return
-        if path is None:
-            colour = getattr(self._theme, which)
-            self._paths[which] = self._line(f"{self._name}/{which}", points, colour)
-            return
-        path.points = _segments(points).astype(np.float32)
-        path.visible = True
+        if len(points) > 1:
+            self._line(f"{self._name}/{which}", points, getattr(self._theme, which))
 
-    def _line(
-        self, name: str, points: Array, colour: tuple[int, int, int]
-    ) -> viser.LineSegmentsHandle:
-        return self._scene.add_line_segments(
+    def _line(self, name: str, points: Array, colour: tuple[int, int, int]) -> None:
+        self._scene.add_line_segments(
             name, _segments(points), colour, thickness=_LINE_M
         )
 

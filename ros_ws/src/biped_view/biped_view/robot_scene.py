@@ -75,10 +75,6 @@ class RobotScene:
         for frame, turn in zip(self._frames, turns, strict=True):
             frame.wxyz = turn
 
-    def show(self, visible: bool) -> None:
-        """Show the robot, or hide it."""
-        self._torso.visible = visible
-
 
 def _add_shapes(
     scene: viser.SceneApi, path: str, link: ET.Element, colours: dict[str, Array]

@@ -1,7 +1,7 @@
 """One look for all that is shown: what each colour means, on light and on dark ground.
 
-Colours of Okabe and Ito ("Color Universal Design", 2008), told apart by people with any
-common colour blindness. What stands for one thing has one colour everywhere.
+The colours are those of the laboratory's figures. What stands for one thing has one
+colour everywhere.
 """
 
 from __future__ import annotations
@@ -9,11 +9,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+from PIL import ImageColor
+
+from biped_lab.report import theme as figures
+
 Colour = tuple[int, int, int]
 """Red, green, blue, from 0 to 255."""
 
-_BLUE, _VERMILLION, _GREEN = (0, 114, 178), (213, 94, 0), (0, 158, 115)
-_PURPLE, _ORANGE, _SKY = (204, 121, 167), (230, 159, 0), (86, 180, 233)
+
+def _rgb(colour: str) -> Colour:
+    red, green, blue, *_ = ImageColor.getrgb(colour)
+    return red, green, blue
+
+
+_BLUE, _VERMILLION = _rgb(figures.BLUE), _rgb(figures.VERMILLION)
+_GREEN, _PURPLE = _rgb(figures.GREEN), _rgb(figures.PURPLE)
+_SKY, _GREY = _rgb(figures.SKY), _rgb(figures.GREY)
 
 
 @dataclass(frozen=True)
@@ -34,20 +45,10 @@ class Theme:
     """The bound at which a walk fails."""
     support: Colour = _SKY
     """Support polygon."""
-    static_waist: Colour = (140, 144, 150)
+    static_waist: Colour = _GREY
     """The planned waist without corrections."""
     waist: Colour = _GREEN
     """The corrected waist."""
-    waist_ahead: Colour = _ORANGE
-    """The corrected waist, not walked yet."""
-    left: Colour = _BLUE
-    right: Colour = _VERMILLION
-    exploring: Colour = _SKY
-    """States whose actions are still chosen by chance."""
-    fixed: Colour = _GREEN
-    """States in fixed mode."""
-    penalty: Colour = _VERMILLION
-    """Penalty states."""
 
 
 LIGHT: Final = Theme(
@@ -59,12 +60,5 @@ DARK: Final = Theme(
     soft=(62, 69, 78),
     paper=(21, 24, 28),
     zmp_reference=_SKY,
-    left=_SKY,
     support=_BLUE,
 )
-
-
-def css(colour: Colour, opacity: float = 1.0) -> str:
-    """Return a colour as style sheets and plots write it."""
-    red, green, blue = colour
-    return f"rgba({red}, {green}, {blue}, {opacity:g})"

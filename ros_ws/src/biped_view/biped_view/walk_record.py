@@ -1,6 +1,7 @@
 """A walk as arrays, one row per control tick: what is drawn, wherever it came from.
 
-A memory is walked in this process, a bag is read; page and report see the same.
+A memory is walked in this process, a bag is read; page, figures and animation see the
+same.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from biped_bringup.cli.learn import MEMORY_FILE
 from biped_lab.run_folder import RUN_FILE, read_spec
 from biped_lab.study import BY_SETTINGS
 from biped_view.bag_walk import walk_of_bag
-from biped_view.walk_record import LoadedWalk, WalkRecord
+from biped_view.walk_record import LoadedWalk
 from biped_view.walked_here import NoWalkError, walk_of_memory
 
 _BAG_SUFFIX, _MEMORY_SUFFIX = ".mcap", ".npz"
@@ -19,19 +19,6 @@ _BAG_SUFFIX, _MEMORY_SUFFIX = ".mcap", ".npz"
 def is_bag(path: Path) -> bool:
     """Return whether a path is a bag, or has been begun as one."""
     return path.suffix == _BAG_SUFFIX or (path.is_dir() and holds_bag(path))
-
-
-def load_walk(path: Path, walk: int | None = None) -> WalkRecord:
-    """Return a walk of a bag, or the frozen greedy walk of a memory.
-
-    Args:
-        path: see `read_walk`.
-        walk: of a bag, 1 for its first; its last by default.
-
-    Raises:
-        BipedError: as `read_walk`.
-    """
-    return read_walk(path, walk).record
 
 
 def read_walk(path: Path, walk: int | None = None) -> LoadedWalk:

@@ -10,6 +10,7 @@ import io
 import textwrap
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Any, Final
 
@@ -106,10 +107,9 @@ def render_mp4(walk: LoadedWalk) -> bytes:
         video: Any = file.add_stream("h264", rate=per_second, options={"crf": "20"})
         video.width, video.height = _SIZE_PX
         video.pix_fmt = "yuv420p"
-        for picture in _pictures(walk, _MP4_TICKS):
-            frame = av.VideoFrame.from_ndarray(np.asarray(picture), format="rgb24")
-            file.mux(video.encode(frame))
-        for _ in range(round(_HOLD_S * per_second)):
+        pictures = list(_pictures(walk, _MP4_TICKS))
+        held = repeat(pictures[-1], round(_HOLD_S * per_second))
+        for picture in chain(pictures, held):
             frame = av.VideoFrame.from_ndarray(np.asarray(picture), format="rgb24")
             file.mux(video.encode(frame))
         file.mux(video.encode())

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
+from tempfile import NamedTemporaryFile
 from types import TracebackType
 from typing import Any, NamedTuple
 
@@ -63,15 +62,12 @@ class OffscreenRobot:
         self._camera = camera
         self._com_m = robot.links[0].com
         self._client = pybullet.connect(pybullet.DIRECT)
-        handle, name = tempfile.mkstemp(suffix=".urdf")
-        try:
-            with os.fdopen(handle, "w") as stream:
-                stream.write(robot.urdf)
+        with NamedTemporaryFile(mode="w", suffix=".urdf", encoding="utf-8") as file:
+            file.write(robot.urdf)
+            file.flush()
             self._body = pybullet.loadURDF(
-                name, useFixedBase=True, physicsClientId=self._client
+                file.name, useFixedBase=True, physicsClientId=self._client
             )
-        finally:
-            os.unlink(name)
         numbers = {
             pybullet.getJointInfo(self._body, j, physicsClientId=self._client)[
                 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +49,6 @@ def write_report(walk: LoadedWalk, page: Path, figures_folder: Path | None) -> N
         "replay": None if in_3d is None else _as_script(in_3d),
         "figures": shown,
         "provenance": provenance(walk),
-        "style": _common_style(),
     }
     write(page, _template().render(content).encode())
 
@@ -74,15 +72,14 @@ def _as_script(in_3d: Replay) -> str:
     return text.replace("</", "<\\/").replace("<!--", "\\u003c!--")
 
 
-def _common_style() -> str:
-    """Return the look of the laboratory's pages, so that all reports have one."""
-    page = resources.files("biped_lab.report").joinpath("report.html.j2").read_text()
-    return page.partition("<style>")[2].partition("</style>")[0]
-
-
 def _template() -> jinja2.Template:
+    # Pages of walks look like those of studies.
+    folders = [
+        jinja2.PackageLoader(package, "")
+        for package in (__package__, "biped_lab.report")
+    ]
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader(__package__, ""),
+        loader=jinja2.ChoiceLoader(folders),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
