@@ -26,6 +26,7 @@ UNITS = {
         "--factor": "simulated seconds per second",
     },
     "check": {},
+    "report": {},
 }
 
 
@@ -131,6 +132,7 @@ def test_every_option_that_takes_a_number_of_units_is_looked_at():
         ("walk", "--seed"),
         ("up", "--seed"),
         ("up", "--domain"),
+        ("report", "--walk"),
     }
     looked_at = {(verb, option) for verb in UNITS for option in UNITS[verb]}
     assert numbers - without_unit == looked_at
