@@ -78,6 +78,10 @@ class Intake:
         self._held: list[BagMessage] = []
         self._sim_time = SimTime(listener) if sim_time else None
 
+    def leave_out(self, name: str) -> None:
+        """Never listen to a topic, whoever publishes it."""
+        self._given_up.add(name)
+
     def expect(self, topics: Iterable[Topic]) -> None:
         """Listen to topics that will be published as their contract says."""
         for topic in topics:

@@ -35,6 +35,7 @@ from biped_bag.recorder.counts import counts_of, counts_table
 from biped_bag.recorder.episodes import EpisodeRecords
 from biped_bag.recorder.intake import Intake
 from biped_bag.recorder.settings import RecorderSettings
+from biped_bag.recorder.transforms import RecordedTransforms
 from biped_bag.recorder.writer_thread import WriterThread
 from biped_bag.records import (
     COMPLETE,
@@ -50,6 +51,7 @@ from biped_bag.storage.writer import BagWriter
 from biped_common.settings import SettingsError, from_json
 from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
+from biped_ros.link_transforms import TF
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.topics import Topic
@@ -95,6 +97,10 @@ class RecorderNode(GuardedNode):
             self._warn,
             sim_time=self._settings.sim_time,
         )
+        self._transforms: RecordedTransforms | None = None
+        if self._settings.make_tf and selection.wants(TF.name, [TF.type_name]):
+            self._intake.leave_out(TF.name)  # one publisher of each transform is enough
+            self._transforms = RecordedTransforms(self._announce, self._warn)
         if self._settings.start_paused:
             # For strangers on the graph only where it was asked for.
             self._intake.paused = True
@@ -206,6 +212,8 @@ class RecorderNode(GuardedNode):
 
     def _hear(self) -> None:
         messages = self._intake.take()
+        if self._transforms is not None:
+            messages = self._transforms.put_in(messages)
         self._episodes.hear(messages)
         self._waiting += messages
 
