@@ -10,4 +10,9 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
+    entry_points={
+        "console_scripts": [
+            "foxglove_bridge = biped_view.foxglove.bridge:main",
+        ],
+    },
 )

@@ -198,4 +198,4 @@ class Intake:
 
     def _give_up(self, name: str, reason: str) -> None:
         self._given_up.add(name)
-        self._warn(f"{name} is not recorded: {reason}")
+        self._warn(f"{name} is left out: {reason}")

@@ -35,7 +35,6 @@ from biped_bag.recorder.counts import counts_of, counts_table
 from biped_bag.recorder.episodes import EpisodeRecords
 from biped_bag.recorder.intake import Intake
 from biped_bag.recorder.settings import RecorderSettings
-from biped_bag.recorder.transforms import RecordedTransforms
 from biped_bag.recorder.writer_thread import WriterThread
 from biped_bag.records import (
     COMPLETE,
@@ -48,6 +47,7 @@ from biped_bag.records import (
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.layout import fresh_folder
 from biped_bag.storage.writer import BagWriter
+from biped_bag.transforms import MadeTransforms
 from biped_common.settings import SettingsError, from_json
 from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
@@ -97,10 +97,10 @@ class RecorderNode(GuardedNode):
             self._warn,
             sim_time=self._settings.sim_time,
         )
-        self._transforms: RecordedTransforms | None = None
+        self._transforms: MadeTransforms | None = None
         if self._settings.make_tf and selection.wants(TF.name, [TF.type_name]):
             self._intake.leave_out(TF.name)  # one publisher of each transform is enough
-            self._transforms = RecordedTransforms(self._announce, self._warn)
+            self._transforms = MadeTransforms(self._announce, self._warn)
         if self._settings.start_paused:
             # For strangers on the graph only where it was asked for.
             self._intake.paused = True

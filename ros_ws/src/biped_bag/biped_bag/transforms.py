@@ -1,7 +1,7 @@
-"""/tf in the bag: put in behind the messages that it is made of.
+"""/tf among messages that come from the graph, behind those that it is made of.
 
-Its type has no wheel, so nobody publishes it here, and a bag without it shows viewers a
-robot that stands still. Its channel looks as that of any other publisher would.
+Its type has no wheel, so none of our nodes publishes it, and viewers of the others show
+a robot that stands still. Its topic looks as that of any other publisher would.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from biped_ros.qos import qos_profile
 from msgs_json.topics import TORSO_POSE
 
 
-class RecordedTransforms:
-    """Makes messages of /tf of the messages that are being recorded."""
+class MadeTransforms:
+    """Makes messages of /tf of the messages that come."""
 
     def __init__(
         self, announce: Callable[[BagTopic], None], warn: Callable[[str], None]
@@ -42,7 +42,7 @@ class RecordedTransforms:
         """Return the messages and, among them, those of /tf that they complete.
 
         Args:
-            messages: in the order of recording.
+            messages: in the order in which they came.
         """
         together = []
         for message in messages:
@@ -52,7 +52,7 @@ class RecordedTransforms:
             try:
                 made = self._source.hear(message.topic, message.data)
             except RobotDescriptionError as error:
-                self._warn(f"{TF.name} is not recorded: {error}")
+                self._warn(f"{TF.name} cannot be made: {error}")
                 continue
             if made is None:
                 continue
