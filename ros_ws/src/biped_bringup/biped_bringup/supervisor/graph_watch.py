@@ -25,11 +25,13 @@ from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError, decode
 
 NAME = "supervisor"
+FOXGLOVE = "foxglove_bridge"
 _NODES = (
     topics.SIM_NODE,
     topics.TRAJECTORY_NODE,
     topics.LEARNER_NODE,
     topics.RECORDER_NODE,
+    FOXGLOVE,
 )
 # A result and the observation that bears it out come by different ways.
 _REMEMBERED_OBSERVATIONS = 100

@@ -1,8 +1,8 @@
 """Foxglove's server: ROS topics as channels, their messages as the bytes they came in.
 
-The server is that of foxglove-sdk, which the extra `foxglove` brings: this module cannot
-be imported without. Nothing comes in by it: it offers neither services nor parameters,
-and takes no messages.
+The server is that of foxglove-sdk, which the extra `foxglove` brings; without it, this
+module cannot be imported. Nothing comes in by the server: it offers neither services
+nor parameters, and takes no messages.
 """
 
 from __future__ import annotations
