@@ -21,14 +21,17 @@ from typing import Any
 import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
 
+from biped_bag.qos import as_rosbag2
 from biped_bag.recorder.intake import Intake
 from biped_bag.selection import Selection
+from biped_bag.storage.contents import BagTopic
 from biped_bag.transforms import MadeTransforms
 from biped_common.errors import BipedError
 from biped_common.settings import Settings, setting
 from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
 from biped_ros.link_transforms import TF
+from biped_ros.qos import qos_profile
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.topics import Topic
@@ -74,7 +77,12 @@ class FoxgloveBridge(GuardedNode):
             ) from None
         super().__init__(NAME, **options)
         settings = self.settings_from_parameters(BridgeSettings)
-        self.server = FoxgloveServer("biped", settings.port)
+        expected = [t for t in vars(topics).values() if isinstance(t, Topic)]
+        offered = [
+            BagTopic(t.name, t.type_name, [as_rosbag2(qos_profile(t))])
+            for t in (*expected, TF)
+        ]
+        self.server = FoxgloveServer("biped", settings.port, offered)
         self._listener = rclpy.create_node(
             f"_{NAME}_intake",
             context=self.context,
@@ -86,9 +94,7 @@ class FoxgloveBridge(GuardedNode):
         )
         self._intake.leave_out(TF.name)
         self._transforms = MadeTransforms(self.server.add_topic, self._warn)
-        self._intake.expect(
-            topic for topic in vars(topics).values() if isinstance(topic, Topic)
-        )
+        self._intake.expect(expected)
         self.create_timer(_TURN_S, self._turn)
         self.create_timer(_LOOK_PERIOD_S, self._intake.look_around)
         self.get_logger().info(f"for Foxglove: {self.server.url}")

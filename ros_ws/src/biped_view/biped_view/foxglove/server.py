@@ -7,12 +7,13 @@ nor parameters, and takes no messages.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from queue import Empty, SimpleQueue
 
 import foxglove
 from foxglove.websocket import ChannelView, Client, ServerListener
 
-from biped_bag.storage.contents import BagMessage, BagTopic, channel_metadata
+from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.definitions import message_definition
 from biped_common.errors import BipedError
 
@@ -26,12 +27,13 @@ class PortError(BipedError):
 class FoxgloveServer:
     """A server on this machine, for any number of clients."""
 
-    def __init__(self, name: str, port: int) -> None:
+    def __init__(self, name: str, port: int, topics: Iterable[BagTopic]) -> None:
         """Listen for clients.
 
         Args:
             name: that clients show.
             port: to listen on; 0 takes a free one.
+            topics: offered to every client at once, before there are messages.
 
         Raises:
             PortError: the port is taken.
@@ -40,6 +42,8 @@ class FoxgloveServer:
         self._channels: dict[str, foxglove.Channel] = {}
         self._latched: dict[str, BagMessage | None] = {}
         self._subscribed: SimpleQueue[str] = SimpleQueue()
+        for topic in topics:
+            self.add_topic(topic)
         try:
             self._server = foxglove.start_server(
                 name=name,
@@ -57,11 +61,13 @@ class FoxgloveServer:
         return f"ws://{HOST}:{self._server.port}"
 
     def add_topic(self, topic: BagTopic) -> None:
-        """Offer a topic from now on, with the definition of its type.
+        """Offer a topic from now on, if it is not yet, with its type's definition.
 
         Raises:
             BagError: no installed package defines its type.
         """
+        if topic.name in self._channels:
+            return
         definition = topic.definition or message_definition(topic.type_name)
         self._channels[topic.name] = foxglove.Channel(
             topic.name,
@@ -69,7 +75,6 @@ class FoxgloveServer:
                 name=topic.type_name, encoding="ros2msg", data=definition.encode()
             ),
             message_encoding=topic.encoding,
-            metadata=channel_metadata(topic),
             context=self._context,
         )
         if topic.latched:
