@@ -17,12 +17,12 @@ from biped_description.links import LINK_NAMES
 from biped_ros.cdr import string_message
 from biped_ros.link_transforms import (
     TF,
-    TF_TYPE_HASH,
     RobotDescriptionError,
     TransformSource,
 )
 from biped_ros.markers import torso_pose_template
 from biped_ros.messages import joint_state_template
+from biped_ros.tf_type import TF_TYPE_HASH
 from msgs_json import topics
 
 URDF = SHIPPED.urdf

@@ -13,6 +13,7 @@ setup(
     entry_points={
         "console_scripts": [
             "foxglove_bridge = biped_view.foxglove.bridge:main",
+            "tf_node = biped_view.tf_node:main",
         ],
     },
 )

@@ -10,13 +10,9 @@ from collections.abc import Callable, Sequence
 
 from biped_bag.qos import as_rosbag2
 from biped_bag.storage.contents import BagMessage, BagTopic
-from biped_ros.link_transforms import (
-    TF,
-    TF_TYPE_HASH,
-    RobotDescriptionError,
-    TransformSource,
-)
+from biped_ros.link_transforms import TF, RobotDescriptionError, TransformSource
 from biped_ros.qos import qos_profile
+from biped_ros.tf_type import TF_TYPE_HASH
 from msgs_json.topics import TORSO_POSE
 
 

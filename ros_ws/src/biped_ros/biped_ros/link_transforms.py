@@ -19,6 +19,7 @@ from biped_description.links import TORSO
 from biped_ros.cdr import MessageTemplate, string_text
 from biped_ros.markers import torso_pose_template
 from biped_ros.messages import WORLD_FRAME, joint_state_template
+from biped_ros.tf_type import TF_TYPE
 from msgs_json import topics
 from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError
@@ -27,14 +28,10 @@ Rows = NDArray[np.float64]
 
 TF = Topic(
     "/tf",
-    "tf2_msgs/msg/TFMessage",
+    TF_TYPE,
     depth=100,
     meaning="world to torso, and each link from the one above it [m]",
 )
-TF_DEFINITION = "geometry_msgs/TransformStamped[] transforms\n"
-"""The public definition of its type, for which there is no wheel."""
-TF_TYPE_HASH = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
-"""Follows from that definition and from those nested in it."""
 MADE_OF = (topics.ROBOT_DESCRIPTION, topics.JOINT_STATES, topics.TORSO_POSE)
 
 # Joint states that wait for the pose of their control tick, half a second at 500 Hz.

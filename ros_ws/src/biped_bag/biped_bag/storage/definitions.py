@@ -17,7 +17,7 @@ from rosidl_adapter.parser import (  # type: ignore[import-untyped]
 )
 
 from biped_bag.errors import BagError
-from biped_ros.link_transforms import TF, TF_DEFINITION
+from biped_ros.tf_type import TF_DEFINITION, TF_TYPE
 
 _SEPARATOR = "=" * 80
 
@@ -59,7 +59,7 @@ def _own_text(type_name: str) -> str:
         file = share / package / kind / f"{message}.msg"
         if index.exists() and file.exists():
             return file.read_text(encoding="utf-8")
-    if type_name == TF.type_name:
+    if type_name == TF_TYPE:
         return TF_DEFINITION
     raise BagError(f"{type_name}: no installed package defines this message")
 

@@ -29,7 +29,7 @@ from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.cli.up_report import EndedRun, report
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import RunSettings
-from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, GraphWatch
+from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, TF_NODE, GraphWatch
 from biped_bringup.supervisor.supervisor import (
     RECORDER,
     START_ORDER,
@@ -163,6 +163,9 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         help="show the graph to Foxglove, on this port of 127.0.0.1 (default "
         f"{_FOXGLOVE_PORT}); needs the extra foxglove",
     )
+    parser.add_argument(
+        "--tf", action="store_true", help="publish /tf, so that rviz2 moves the robot"
+    )
     add_real_time_options(parser)
     add_recording_options(parser)
     add_settings_options(parser)
@@ -223,6 +226,9 @@ def run(options: argparse.Namespace) -> int:
     if options.foxglove is not None:
         names.append(FOXGLOVE)
         parameters[FOXGLOVE] = {"port": options.foxglove}
+    if options.tf:
+        names.append(TF_NODE)
+        parameters[TF_NODE] = {}
     with exclusive_folder(writable_folder(out)):
         # A learner that finds its memory goes on from it.
         changes = "" if learned is None else learned.setting_changes

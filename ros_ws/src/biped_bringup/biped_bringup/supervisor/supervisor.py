@@ -7,8 +7,8 @@ What failures do:
     a node says that it cannot go on (wrong parameter, another learner on the graph):
         everything is ended at once, since a new start would come to the same.
     the recorder says so (disk full, folder unusable), or keeps dying: the recording has
-        stopped, the walk goes on; `done_without` says why. Likewise the bridge to
-        Foxglove (port taken).
+        stopped, the walk goes on; `done_without` says why. Likewise whoever
+        only listens, such as the bridge to Foxglove (port taken).
     a node lives but has said nothing for a while: it is killed, and counts as died.
     SIGINT, SIGTERM: the nodes are asked to end, last started first; who does not, is
         terminated and then killed.
@@ -27,7 +27,7 @@ from typing import Any
 import yaml
 
 from biped_bringup.supervisor.child import Child
-from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, GraphWatch
+from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, TF_NODE, GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
 from biped_common.command_line import WRONG_INPUT
 from biped_common.errors import BipedError
@@ -48,7 +48,10 @@ _MODULES = {
 }
 START_ORDER = tuple(_MODULES)
 # Started last, where asked for: packages above this one, found by what they declare.
-_LISTENERS = {FOXGLOVE: "biped_view/foxglove_bridge"}
+_LISTENERS = {
+    FOXGLOVE: "biped_view/foxglove_bridge",
+    TF_NODE: "biped_view/tf_node",
+}
 _TURN_S = 0.1
 _ENDING_TURN_S = 0.02
 
