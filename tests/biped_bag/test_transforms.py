@@ -3,14 +3,17 @@
 from pathlib import Path
 
 import pytest
+import rclpy
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 from tests.biped_bag.bags import START_NS, TICK_NS
+from tests.graph.domains import MODULE, own_domain
 from tests.robots import SHIPPED
 
 from biped_bag.info import info_text
+from biped_bag.player.node import PlayerNode
 from biped_bag.recorder.settings import RecorderSettings
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.reader import BagReader
@@ -18,6 +21,7 @@ from biped_bag.storage.writer import BagWriter
 from biped_bag.transforms import MadeTransforms
 from biped_bringup.cli.recording import recorder_parameters
 from biped_description.joints import JOINT_NAMES
+from biped_ros import tf_type
 from biped_ros.cdr import string_message
 from biped_ros.link_transforms import MADE_OF, TF
 from biped_ros.markers import torso_pose_template
@@ -112,3 +116,29 @@ def test_only_biped_up_asks_the_recorder_for_it():
     """`ros2 bag record` records what is on the graph, and nothing else."""
     assert not RecorderSettings().make_tf
     assert recorder_parameters(Path("bag"), {}, None, {})["make_tf"] is True
+
+
+@pytest.fixture
+def playable(bag):
+    """Return which topics of the bag the player publishes."""
+    context = rclpy.Context()
+
+    def topics_played():
+        rclpy.init(context=context, domain_id=own_domain(MODULE))
+        node = PlayerNode(BagReader(bag).topics, {}, context=context)
+        node.destroy_node()
+        return node.topics
+
+    yield topics_played
+    rclpy.shutdown(context=context)
+
+
+def test_it_is_played_with_the_others(playable):
+    assert playable() == {TF.name, *(topic.name for topic in MADE_OF)}
+
+
+def test_where_its_type_cannot_be_made_the_others_are_played(playable, monkeypatch):
+    monkeypatch.setattr(tf_type, "_NESTED", b"geometry_msgs/msg/Pose")
+    tf_type.tf_message_class.cache_clear()
+    assert playable() == {topic.name for topic in MADE_OF}
+    tf_type.tf_message_class.cache_clear()
