@@ -32,6 +32,7 @@ ROSDEP_KEYS = {
 FROM_PIP = {
     "cma": "cma",
     "distributed": "distributed",
+    "foxglove": "foxglove-sdk",
     "lifelines": "lifelines",
     "llvmlite": "llvmlite",
     "lz4": "lz4",
