@@ -34,6 +34,7 @@ FROM_PIP = {
     "av": "av",
     "cma": "cma",
     "distributed": "distributed",
+    "foxglove": "foxglove-sdk",
     "lifelines": "lifelines",
     "llvmlite": "llvmlite",
     "lz4": "lz4",

@@ -13,5 +13,9 @@ setup(
     package_data={NAME: ["report/*.j2"]},
     entry_points={
         "biped.verbs": ["report = biped_view.verbs.report:add_parser"],
+        "console_scripts": [
+            "foxglove_bridge = biped_view.foxglove.bridge:main",
+            "tf_node = biped_view.tf_node:main",
+        ],
     },
 )

@@ -14,6 +14,7 @@ from rclpy.serialization import deserialize_message
 
 from biped_common.timing import CONTROL_PERIOD_US
 from biped_ros.cdr import MessageTemplate, read_stamp
+from biped_ros.tf_type import TF_TYPE, tf_message_class
 from msgs_json.segment import WaistSegment
 from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError
@@ -28,7 +29,9 @@ _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 
 
 def message_type(topic: Topic) -> Any:
-    """Return the message class of a topic."""
+    """Return the message class of a topic; that of /tf is for bytes only."""
+    if topic.type_name == TF_TYPE:
+        return tf_message_class()
     package, _, name = topic.type_name.split("/")
     return getattr(importlib.import_module(f"{package}.msg"), name)
 

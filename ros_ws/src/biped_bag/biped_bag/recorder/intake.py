@@ -78,6 +78,10 @@ class Intake:
         self._held: list[BagMessage] = []
         self._sim_time = SimTime(listener) if sim_time else None
 
+    def leave_out(self, name: str) -> None:
+        """Never listen to a topic, whoever publishes it."""
+        self._given_up.add(name)
+
     def expect(self, topics: Iterable[Topic]) -> None:
         """Listen to topics that will be published as their contract says."""
         for topic in topics:
@@ -194,4 +198,4 @@ class Intake:
 
     def _give_up(self, name: str, reason: str) -> None:
         self._given_up.add(name)
-        self._warn(f"{name} is not recorded: {reason}")
+        self._warn(f"{name} is left out: {reason}")

@@ -47,9 +47,11 @@ from biped_bag.records import (
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.layout import fresh_folder
 from biped_bag.storage.writer import BagWriter
+from biped_bag.transforms import MadeTransforms
 from biped_common.settings import SettingsError, from_json
 from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
+from biped_ros.link_transforms import TF
 from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.topics import Topic
@@ -95,6 +97,10 @@ class RecorderNode(GuardedNode):
             self._warn,
             sim_time=self._settings.sim_time,
         )
+        self._transforms: MadeTransforms | None = None
+        if self._settings.make_tf and selection.wants(TF.name, [TF.type_name]):
+            self._intake.leave_out(TF.name)  # one publisher of each transform is enough
+            self._transforms = MadeTransforms(self._announce, self._warn)
         if self._settings.start_paused:
             # For strangers on the graph only where it was asked for.
             self._intake.paused = True
@@ -206,6 +212,8 @@ class RecorderNode(GuardedNode):
 
     def _hear(self) -> None:
         messages = self._intake.take()
+        if self._transforms is not None:
+            messages = self._transforms.put_in(messages)
         self._episodes.hear(messages)
         self._waiting += messages
 

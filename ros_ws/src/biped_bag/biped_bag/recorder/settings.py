@@ -43,6 +43,12 @@ class RecorderSettings(Settings):
         "listen to the biped's topics before anybody publishes them, so that their "
         "first messages are not missed",
     )
+    make_tf: bool = setting(
+        False,
+        "",
+        "record /tf, made of torso pose, joint states and robot description, where "
+        "these are recorded",
+    )
     split: str = setting(
         "none",
         "",

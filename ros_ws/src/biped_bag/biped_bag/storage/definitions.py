@@ -1,6 +1,7 @@
 """Message definitions as MCAP wants them: a type's text and those of all nested types.
 
-The texts are the installed `share/PACKAGE/msg/TYPE.msg`, found by the ament index.
+The texts are the installed `share/PACKAGE/msg/TYPE.msg`, found by the ament index; that
+of /tf stands here, since its package has no wheel.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from rosidl_adapter.parser import (  # type: ignore[import-untyped]
 )
 
 from biped_bag.errors import BagError
+from biped_ros.tf_type import TF_DEFINITION, TF_TYPE
 
 _SEPARATOR = "=" * 80
 
@@ -57,6 +59,8 @@ def _own_text(type_name: str) -> str:
         file = share / package / kind / f"{message}.msg"
         if index.exists() and file.exists():
             return file.read_text(encoding="utf-8")
+    if type_name == TF_TYPE:
+        return TF_DEFINITION
     raise BagError(f"{type_name}: no installed package defines this message")
 
 

@@ -85,6 +85,7 @@ def recorder_parameters(
         folder=str(folder),
         number_if_taken=True,  # a recorder that is started again begins a bag anew
         expect_biped=True,
+        make_tf=True,
         run=json.dumps(dict(run)),
         attachment="" if memory_file is None else str(memory_file),
         **split,

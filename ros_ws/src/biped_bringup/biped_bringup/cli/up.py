@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ from biped_bringup.cli.status_screen import StatusScreen
 from biped_bringup.cli.up_report import EndedRun, report
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import RunSettings
-from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
+from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, TF_NODE, GraphWatch
 from biped_bringup.supervisor.supervisor import (
     RECORDER,
     START_ORDER,
@@ -61,6 +62,7 @@ from trajectory_node.waist_reference import WaistReference
 # On a busy machine a peer can be too late in real time, which is not the walk's fault.
 _ATTEMPTS = 5
 _DEFAULT_OUT = Path("bags/up")
+_FOXGLOVE_PORT = 8765
 # Settings of nodes that are given as options.
 # By the setting that each gives.
 _OPTIONS = {
@@ -152,6 +154,18 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser.add_argument(
         "--no-view", action="store_true", help="plain lines instead of a live screen"
     )
+    parser.add_argument(
+        "--foxglove",
+        nargs="?",
+        type=natural,
+        const=_FOXGLOVE_PORT,
+        metavar="PORT",
+        help="show the graph to Foxglove, on this port of 127.0.0.1 (default "
+        f"{_FOXGLOVE_PORT}); needs the extra foxglove",
+    )
+    parser.add_argument(
+        "--tf", action="store_true", help="publish /tf, so that rviz2 moves the robot"
+    )
     add_real_time_options(parser)
     add_recording_options(parser)
     add_settings_options(parser)
@@ -174,6 +188,8 @@ def run(options: argparse.Namespace) -> int:
     # Refuses here a gait that the robot cannot walk.
     WaistReference(Robot(settings.robot), settings.gait, settings.correction)
     bag = bag_folder(options, names)
+    if options.foxglove is not None and find_spec("foxglove") is None:
+        raise CommandError("--foxglove: needs pip install 'biped[foxglove]'")
     domain = _domain(options.domain)
     max_episodes = 1 if options.greedy else options.episodes or 0
     try:
@@ -207,6 +223,12 @@ def run(options: argparse.Namespace) -> int:
         parameters[RECORDER] = recorder_parameters(
             bag, run_data, begun_with, options.record_split
         )
+    if options.foxglove is not None:
+        names.append(FOXGLOVE)
+        parameters[FOXGLOVE] = {"port": options.foxglove}
+    if options.tf:
+        names.append(TF_NODE)
+        parameters[TF_NODE] = {}
     with exclusive_folder(writable_folder(out)):
         # A learner that finds its memory goes on from it.
         changes = "" if learned is None else learned.setting_changes

@@ -25,11 +25,15 @@ from msgs_json.topics import Topic
 from msgs_json.wire import MalformedMessageError, decode
 
 NAME = "supervisor"
+FOXGLOVE = "foxglove_bridge"
+TF_NODE = "tf_node"
 _NODES = (
     topics.SIM_NODE,
     topics.TRAJECTORY_NODE,
     topics.LEARNER_NODE,
     topics.RECORDER_NODE,
+    FOXGLOVE,
+    TF_NODE,
 )
 # A result and the observation that bears it out come by different ways.
 _REMEMBERED_OBSERVATIONS = 100

@@ -7,7 +7,8 @@ What failures do:
     a node says that it cannot go on (wrong parameter, another learner on the graph):
         everything is ended at once, since a new start would come to the same.
     the recorder says so (disk full, folder unusable), or keeps dying: the recording has
-        stopped, the walk goes on; `done_without` says why.
+        stopped, the walk goes on; `done_without` says why. Likewise whoever
+        only listens, such as the bridge to Foxglove (port taken).
     a node lives but has said nothing for a while: it is killed, and counts as died.
     SIGINT, SIGTERM: the nodes are asked to end, last started first; who does not, is
         terminated and then killed.
@@ -26,10 +27,11 @@ from typing import Any
 import yaml
 
 from biped_bringup.supervisor.child import Child
-from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
+from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, TF_NODE, GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
 from biped_common.command_line import WRONG_INPUT
 from biped_common.errors import BipedError
+from biped_common.verbs import entry_points
 from biped_ros.environment import LEASE_S
 from biped_ros.process import process_name
 from biped_ros.running import REFUSED
@@ -45,6 +47,11 @@ _MODULES = {
     topics.SIM_NODE: "sim_node.node",
 }
 START_ORDER = tuple(_MODULES)
+# Started last, where asked for: packages above this one, found by what they declare.
+_LISTENERS = {
+    FOXGLOVE: "biped_view/foxglove_bridge",
+    TF_NODE: "biped_view/tf_node",
+}
 _TURN_S = 0.1
 _ENDING_TURN_S = 0.02
 
@@ -95,14 +102,14 @@ class Supervisor:
         self._budgets: dict[str, RestartBudget] = {}
         self._show = show
         self._patience = patience or Patience()
-        for name in START_ORDER:
+        for name in (*START_ORDER, *_LISTENERS):
             if name in parameters:
                 file = folder / f"{name}.yaml"
                 content = {name: {"ros__parameters": dict(parameters[name])}}
                 file.write_text(yaml.safe_dump(content))
                 log = folder / f"{name}.log"
                 self.children[name] = Child(
-                    name, _MODULES[name], file, environment, log, show
+                    name, _module(name), file, environment, log, show
                 )
                 self._budgets[name] = RestartBudget()
         self.graph = GraphWatch(int(environment["ROS_DOMAIN_ID"]))
@@ -233,8 +240,15 @@ class Supervisor:
         Raises:
             NodeFailureError: it cannot.
         """
-        if child.name != RECORDER:
+        if child.name not in (RECORDER, *_LISTENERS):
             raise NodeFailureError(f"{child.name} {reason}")
         child.signal(signal.SIGKILL)
         self.done_without[child.name] = reason
         self._show(NAME, f"{child.name}: {reason}; the walk goes on")
+
+
+def _module(name: str) -> str:
+    """Return the module that runs a node."""
+    if name in _MODULES:
+        return _MODULES[name]
+    return entry_points("biped.nodes")[_LISTENERS[name]].module

@@ -1,0 +1,1 @@
+"""The graph on a WebSocket, as Foxglove's app wants it."""
