@@ -1,0 +1,219 @@
+"""What is drawn around the robot: floor, soles, support, ZMP and limit, waist paths.
+
+All on the floor lies a little above it, one above the other, so that nothing flickers.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import viser
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import ConvexHull
+
+from biped_description.settings import RobotSettings
+from biped_view.theme import Theme
+
+Array = NDArray[np.float64]
+
+# Heights above the floor [m].
+_SUPPORT_Z, _SOLE_Z, _LIMIT_Z, _REFERENCE_Z, _ZMP_Z = 0.001, 0.002, 0.003, 0.004, 0.006
+_LINE_M: Final = 0.004
+_DOT_M: Final = 0.012
+_CIRCLE_POINTS: Final = 65
+_LIMIT_OPACITY: Final = 0.18
+_SUPPORT_OPACITY: Final = 0.30
+
+
+class FloorScene:
+    """The floor and what is marked on it and above; world frame [m]."""
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        robot: RobotSettings,
+        zmp_limit_m: float,
+        theme: Theme,
+        name: str = "/walk",
+    ) -> None:
+        """Add the floor; what moves appears with its first place.
+
+        Args:
+            scene: of a viser server.
+            robot: dimensions of its soles.
+            zmp_limit_m: norm of the ZMP error at which the walk fails.
+            theme: of all colours.
+            name: of the part of the scene's tree that this fills.
+        """
+        self._scene, self._robot, self._name = scene, robot, name
+        self._zmp_limit_m, self._theme = zmp_limit_m, theme
+        self._paths: dict[str, viser.LineSegmentsHandle] = {}
+        self._soles: Array | None = None
+        self.paint(theme)
+
+    def paint(self, theme: Theme) -> None:
+        """Draw in the colours of a theme, anew if need be."""
+        self._theme = theme
+        scene, name = self._scene, self._name
+        for path in self._paths.values():
+            path.remove()
+        self._paths.clear()
+        self._soles = None
+        scene.add_grid(
+            "/floor",
+            infinite_grid=True,
+            cell_size=0.1,
+            section_size=0.5,
+            cell_color=theme.soft,
+            section_color=theme.soft,
+            cell_thickness=0.6,
+            section_thickness=1.2,
+            fade_distance=6.0,
+            plane_color=theme.paper,
+            plane_opacity=1.0,
+            shadow_opacity=0.15,
+            position=(0.0, 0.0, -0.001),
+        )
+        self._reference = scene.add_frame(
+            f"{name}/reference", show_axes=False, visible=False
+        )
+        _flat_disc(
+            scene, f"{name}/reference/limit", self._zmp_limit_m, theme.limit, _LIMIT_Z
+        )
+        angles = np.linspace(0.0, 2 * np.pi, _CIRCLE_POINTS)
+        ring = self._zmp_limit_m * np.column_stack((np.cos(angles), np.sin(angles)))
+        self._line(f"{name}/reference/ring", _at(ring, _LIMIT_Z), theme.limit)
+        scene.add_icosphere(
+            f"{name}/reference/dot",
+            _DOT_M,
+            theme.zmp_reference,
+            scale=(1.0, 1.0, 0.2),
+            position=(0.0, 0.0, _REFERENCE_Z),
+            cast_shadow=False,
+        )
+        self._zmp = scene.add_icosphere(
+            f"{name}/zmp",
+            _DOT_M,
+            theme.zmp,
+            scale=(1.0, 1.0, 0.2),
+            cast_shadow=False,
+            visible=False,
+        )
+
+    def place_zmp(self, measured_m: ArrayLike, reference_m: ArrayLike) -> None:
+        """Move the measured ZMP, and its reference with the limit around it.
+
+        Args:
+            measured_m: (2,)
+            reference_m: (2,)
+        """
+        self._zmp.position = np.array([*np.asarray(measured_m), _ZMP_Z])
+        self._reference.position = np.array([*np.asarray(reference_m), 0.0])
+        if not self._zmp.visible:
+            self._zmp.visible = self._reference.visible = True
+
+    def place_support(self, feet_m: ArrayLike) -> None:
+        """Draw the soles that carry load, and the support polygon around them.
+
+        Args:
+            feet_m: (n, 2) or (n, 3) points of none, one or both soles under the ankle.
+        """
+        feet = np.asarray(feet_m, dtype=np.float64).reshape(-1, np.shape(feet_m)[-1])
+        soles = feet[:, None, :2] + _sole(self._robot)
+        if self._soles is not None and np.array_equal(soles, self._soles):
+            return
+        self._soles, name = soles, f"{self._name}/support"
+        if not len(soles):
+            self._scene.remove_by_name(name)
+            return
+        corners = soles.reshape(-1, 2)
+        hull = corners[ConvexHull(corners).vertices]
+        fan = np.array([(0, k, k + 1) for k in range(1, len(hull) - 1)])
+        self._scene.add_mesh_simple(
+            name,
+            _at(hull, _SUPPORT_Z),
+            fan,
+            color=self._theme.support,
+            opacity=_SUPPORT_OPACITY,
+            side="double",
+            cast_shadow=False,
+        )
+        outlines = np.concatenate([_segments(_closed(sole)) for sole in soles])
+        self._scene.add_line_segments(
+            f"{name}/soles",
+            np.concatenate((outlines, np.full((*outlines.shape[:2], 1), _SOLE_Z)), 2),
+            self._theme.support,
+            thickness=_LINE_M,
+        )
+
+    def draw_path(self, which: str, points_m: ArrayLike) -> None:
+        """Draw a path of the waist.
+
+        Args:
+            which: a field of the theme: "static_waist", "waist" or "waist_ahead".
+            points_m: (n, 3) on the way; with fewer than two nothing is drawn.
+        """
+        points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
+        path = self._paths.get(which)
+        if len(points) < 2:
+            if path is not None:
+                path.visible = False
+            return
+        if path is None:
+            colour = getattr(self._theme, which)
+            self._paths[which] = self._line(f"{self._name}/{which}", points, colour)
+            return
+        path.points = _segments(points).astype(np.float32)
+        path.visible = True
+
+    def _line(
+        self, name: str, points: Array, colour: tuple[int, int, int]
+    ) -> viser.LineSegmentsHandle:
+        return self._scene.add_line_segments(
+            name, _segments(points), colour, thickness=_LINE_M
+        )
+
+
+def _sole(robot: RobotSettings) -> Array:
+    """Return the corners (4, 2) of a sole, from the point under its ankle [m]."""
+    half_x, half_y = robot.sole_length_m / 2, robot.sole_width_m / 2
+    ahead = robot.sole_ahead_of_ankle_m
+    return np.array(
+        [(ahead + x * half_x, y * half_y)
+         for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    )  # fmt: skip
+
+
+def _closed(corners: Array) -> Array:
+    return np.concatenate((corners, corners[:1]))
+
+
+def _segments(points: Array) -> Array:
+    """Return the (n - 1, 2, d) pieces of a path of (n, d) points."""
+    return np.stack((points[:-1], points[1:]), axis=1)
+
+
+def _at(points: Array, height_m: float) -> Array:
+    """Return (n, 3) points above the floor of (n, 2) points on it."""
+    return np.column_stack((points, np.full(len(points), height_m)))
+
+
+def _flat_disc(
+    scene: viser.SceneApi,
+    name: str,
+    radius_m: float,
+    colour: tuple[int, int, int],
+    height_m: float,
+) -> None:
+    scene.add_cylinder(
+        name,
+        radius_m,
+        0.0005,
+        colour,
+        radial_segments=64,
+        opacity=_LIMIT_OPACITY,
+        position=(0.0, 0.0, height_m - 0.001),
+        cast_shadow=False,
+        receive_shadow=False,
+    )
