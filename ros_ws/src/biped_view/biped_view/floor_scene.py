@@ -18,7 +18,13 @@ from biped_view.theme import Theme
 Array = NDArray[np.float64]
 
 # Heights above the floor [m].
-_SUPPORT_Z, _SOLE_Z, _LIMIT_Z, _REFERENCE_Z, _ZMP_Z = 0.001, 0.002, 0.003, 0.004, 0.006
+_SUPPORT_Z, _OUTLINE_Z, _LIMIT_Z, _REFERENCE_Z, _ZMP_Z = (
+    0.001,
+    0.002,
+    0.003,
+    0.004,
+    0.006,
+)
 _LINE_M: Final = 0.004
 _DOT_M: Final = 0.012
 _CIRCLE_POINTS: Final = 65
@@ -32,7 +38,7 @@ class FloorScene:
     def __init__(
         self,
         scene: viser.SceneApi,
-        robot: RobotSettings,
+        robot: RobotSettings | None,
         zmp_limit_m: float,
         theme: Theme,
         name: str = "/walk",
@@ -41,7 +47,7 @@ class FloorScene:
 
         Args:
             scene: of a viser server.
-            robot: dimensions of its soles.
+            robot: dimensions of its soles; None where only polygons are placed.
             zmp_limit_m: norm of the ZMP error at which the walk fails.
             theme: of all colours.
             name: of the part of the scene's tree that this fills.
@@ -49,7 +55,7 @@ class FloorScene:
         self._scene, self._robot, self._name = scene, robot, name
         self._zmp_limit_m, self._theme = zmp_limit_m, theme
         self._paths: dict[str, viser.LineSegmentsHandle] = {}
-        self._soles: Array | None = None
+        self._corners: Array | None = None
         self.paint(theme)
 
     def paint(self, theme: Theme) -> None:
@@ -59,7 +65,7 @@ class FloorScene:
         for path in self._paths.values():
             path.remove()
         self._paths.clear()
-        self._soles = None
+        self._corners = None
         scene.add_grid(
             "/floor",
             infinite_grid=True,
@@ -70,8 +76,6 @@ class FloorScene:
             cell_thickness=0.6,
             section_thickness=1.2,
             fade_distance=6.0,
-            plane_color=theme.paper,
-            plane_opacity=1.0,
             shadow_opacity=0.15,
             position=(0.0, 0.0, -0.001),
         )
@@ -114,20 +118,29 @@ class FloorScene:
             self._zmp.visible = self._reference.visible = True
 
     def place_support(self, feet_m: ArrayLike) -> None:
-        """Draw the soles that carry load, and the support polygon around them.
+        """Draw the support polygon of the soles that carry load.
 
         Args:
             feet_m: (n, 2) or (n, 3) points of none, one or both soles under the ankle.
         """
-        feet = np.asarray(feet_m, dtype=np.float64).reshape(-1, np.shape(feet_m)[-1])
-        soles = feet[:, None, :2] + _sole(self._robot)
-        if self._soles is not None and np.array_equal(soles, self._soles):
+        assert self._robot is not None
+        self.place_polygon(sole_corners(self._robot, feet_m))
+
+    def place_polygon(self, corners_m: ArrayLike) -> None:
+        """Draw the support polygon.
+
+        Args:
+            corners_m: (n, 2) points; their convex hull is drawn, nothing of none.
+        """
+        corners = np.asarray(corners_m, dtype=np.float64).reshape(-1, 2)
+        if self._corners is not None and np.array_equal(corners, self._corners):
             return
-        self._soles, name = soles, f"{self._name}/support"
-        if not len(soles):
-            self._scene.remove_by_name(name)
+        name, first = f"{self._name}/support", self._corners is None
+        self._corners = corners
+        if not len(corners):
+            if not first:
+                self._scene.remove_by_name(name)
             return
-        corners = soles.reshape(-1, 2)
         hull = corners[ConvexHull(corners).vertices]
         fan = np.array([(0, k, k + 1) for k in range(1, len(hull) - 1)])
         self._scene.add_mesh_simple(
@@ -139,19 +152,16 @@ class FloorScene:
             side="double",
             cast_shadow=False,
         )
-        outlines = np.concatenate([_segments(_closed(sole)) for sole in soles])
-        self._scene.add_line_segments(
-            f"{name}/soles",
-            np.concatenate((outlines, np.full((*outlines.shape[:2], 1), _SOLE_Z)), 2),
-            self._theme.support,
-            thickness=_LINE_M,
+        self._line(
+            f"{name}/outline", _at(_closed(hull), _OUTLINE_Z), self._theme.support
         )
 
     def draw_path(self, which: str, points_m: ArrayLike) -> None:
-        """Draw a path of the waist.
+        """Draw a path, in the colour of what it is.
 
         Args:
-            which: a field of the theme: "static_waist", "waist" or "waist_ahead".
+            which: a field of the theme: "static_waist", "waist", "waist_ahead", or,
+                for the ways of the feet, "left" or "right".
             points_m: (n, 3) on the way; with fewer than two nothing is drawn.
         """
         points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
@@ -175,14 +185,22 @@ class FloorScene:
         )
 
 
-def _sole(robot: RobotSettings) -> Array:
-    """Return the corners (4, 2) of a sole, from the point under its ankle [m]."""
+def sole_corners(robot: RobotSettings, feet_m: ArrayLike) -> Array:
+    """Return the corners (4 n, 2) of soles that point ahead [m].
+
+    Args:
+        robot: dimensions of its soles.
+        feet_m: (n, 2) or (n, 3) points of the soles under the ankle.
+    """
+    feet = np.asarray(feet_m, dtype=np.float64).reshape(-1, np.shape(feet_m)[-1])
     half_x, half_y = robot.sole_length_m / 2, robot.sole_width_m / 2
     ahead = robot.sole_ahead_of_ankle_m
-    return np.array(
+    sole = np.array(
         [(ahead + x * half_x, y * half_y)
          for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     )  # fmt: skip
+    corners: Array = feet[:, None, :2] + sole
+    return corners.reshape(-1, 2)
 
 
 def _closed(corners: Array) -> Array:

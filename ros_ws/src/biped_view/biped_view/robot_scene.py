@@ -12,11 +12,16 @@ import numpy as np
 import viser
 from numpy.typing import ArrayLike, NDArray
 
+from biped_common.errors import BipedError
 from biped_description.joints import JOINT_NAMES
 from biped_description.links import TORSO
 from biped_description.robot import Robot
 
 Array = NDArray[np.float64]
+
+
+class BadUrdfError(BipedError, ValueError):
+    """The text is no URDF of a robot with the joints that are known here."""
 
 
 class RobotScene:
@@ -32,7 +37,26 @@ class RobotScene:
             robot: whose URDF is shown.
             name: of the torso's frame in the scene's tree.
         """
-        urdf = ET.fromstring(robot.urdf)
+        self._add(scene, robot.urdf, name)
+
+    @classmethod
+    def of_urdf(
+        cls, scene: viser.SceneApi, urdf: str, name: str = "/robot"
+    ) -> RobotScene:
+        """Add the robot of a URDF such as `Robot.urdf`, of which the table is unknown.
+
+        Raises:
+            BadUrdfError: it is no URDF of a robot with our joints.
+        """
+        robot = cls.__new__(cls)
+        try:
+            robot._add(scene, urdf, name)
+        except (ET.ParseError, AssertionError, LookupError, ValueError) as error:
+            raise BadUrdfError(f"URDF of another robot, or none: {error}") from None
+        return robot
+
+    def _add(self, scene: viser.SceneApi, text: str, name: str) -> None:
+        urdf = ET.fromstring(text)
         colours = {
             material.attrib["name"]: _numbers(material.find("color"), "rgba")
             for material in urdf.iterfind("material")

@@ -1,0 +1,1 @@
+"""Verbs of `biped` that show something."""
