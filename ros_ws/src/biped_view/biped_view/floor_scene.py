@@ -1,6 +1,7 @@
 """What is drawn around the robot: floor, soles, support, ZMP and limit, waist paths.
 
-All on the floor lies a little above it, one above the other, so that nothing flickers.
+What lies on the floor lies a little above it, one above the other, so that nothing
+flickers. ZMP, reference and limit are drawn above the soles, which would hide them.
 """
 
 from __future__ import annotations
@@ -17,19 +18,15 @@ from biped_view.theme import Theme
 
 Array = NDArray[np.float64]
 
-# Heights above the floor [m].
-_SUPPORT_Z, _OUTLINE_Z, _LIMIT_Z, _REFERENCE_Z, _ZMP_Z = (
-    0.001,
-    0.002,
-    0.003,
-    0.004,
-    0.006,
-)
+# Heights above the floor, or, of what would be hidden, above the soles on it [m].
+_SUPPORT_Z, _OUTLINE_Z, _LIMIT_Z = 0.001, 0.002, 0.003
+_REFERENCE_Z, _ZMP_Z = 0.004, 0.006
+_USUAL_SOLE_M: Final = 0.03
 _LINE_M: Final = 0.004
 _DOT_M: Final = 0.012
 _CIRCLE_POINTS: Final = 65
-_LIMIT_OPACITY: Final = 0.18
-_SUPPORT_OPACITY: Final = 0.30
+_LIMIT_OPACITY: Final = 0.25
+_SUPPORT_OPACITY: Final = 0.55
 
 
 class FloorScene:
@@ -54,6 +51,7 @@ class FloorScene:
         """
         self._scene, self._robot, self._name = scene, robot, name
         self._zmp_limit_m, self._theme = zmp_limit_m, theme
+        self._lift_m = _USUAL_SOLE_M if robot is None else robot.sole_thickness_m
         self._paths: dict[str, viser.LineSegmentsHandle] = {}
         self._corners: Array | None = None
         self.paint(theme)
@@ -112,8 +110,8 @@ class FloorScene:
             measured_m: (2,)
             reference_m: (2,)
         """
-        self._zmp.position = np.array([*np.asarray(measured_m), _ZMP_Z])
-        self._reference.position = np.array([*np.asarray(reference_m), 0.0])
+        self._zmp.position = np.array([*np.asarray(measured_m), self._lift_m + _ZMP_Z])
+        self._reference.position = np.array([*np.asarray(reference_m), self._lift_m])
         if not self._zmp.visible:
             self._zmp.visible = self._reference.visible = True
 

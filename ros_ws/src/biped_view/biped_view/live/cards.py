@@ -10,8 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from biped_lab.report.maps import LearnedMap
-from biped_view.live.moment import LearnerFigures
+from biped_view.live.moment import LearnerFigures, StateMap
 from biped_view.theme import Colour, Theme, css
 
 _SOFT: Final = "var(--mantine-color-dimmed)"
@@ -25,7 +24,7 @@ _MAP_MARGIN_PX: Final = (34, 8, 8, 26)  # left, top, right, bottom
 def headline(state: str, detail: str, colour: Colour) -> str:
     """Return what goes on: a dot, a state in a word or two, and a line below."""
     return (
-        '<div style="padding:2px 2px 0">'
+        '<div style="padding:4px 10px 0">'
         f'<span style="display:inline-block;width:10px;height:10px;border-radius:5px;'
         f'background:{css(colour)};margin-right:8px"></span>'
         f'<b style="font-size:15px">{escape(state)}</b>'
@@ -59,7 +58,7 @@ def learner_card(figures: LearnerFigures, theme: Theme) -> str:
         rows.append(("Walks given up", f"{figures.given_up:,}"))
     share = figures.target_time_s / (figures.walk_time_s or figures.target_time_s)
     return (
-        f'<div style="padding:0 2px"><b>{escape(figures.state)}</b>'
+        f'<div style="padding:0 8px"><b>{escape(figures.state)}</b>'
         + _bar([(share, css(theme.fixed))])
         + _table(rows)
         + _states(figures, theme)
@@ -67,7 +66,7 @@ def learner_card(figures: LearnerFigures, theme: Theme) -> str:
     )
 
 
-def state_map(learned: LearnedMap, as_of: str, theme: Theme) -> str:
+def state_map(learned: StateMap, as_of: str, theme: Theme) -> str:
     """Return a map of the states over the waist plane, coloured by mode.
 
     Args:
@@ -119,7 +118,7 @@ def state_map(learned: LearnedMap, as_of: str, theme: Theme) -> str:
         "</text>"
     )
     return (
-        f'<div style="padding:0 2px"><svg viewBox="0 0 {width} {height}" width="100%" '
+        f'<div style="padding:0 8px"><svg viewBox="0 0 {width} {height}" width="100%" '
         f'font-size="10" fill="{_SOFT}" style="display:block">{"".join(parts)}</svg>'
         + _keys(
             [
@@ -135,7 +134,7 @@ def state_map(learned: LearnedMap, as_of: str, theme: Theme) -> str:
 def note(text: str) -> str:
     """Return a line in place of what is not there."""
     return (
-        f'<div style="font-size:12px;color:{_SOFT};padding:0 2px">{escape(text)}</div>'
+        f'<div style="font-size:12px;color:{_SOFT};padding:0 8px">{escape(text)}</div>'
     )
 
 
@@ -156,7 +155,7 @@ def legend(theme: Theme) -> str:
     )
 
 
-def _bounds(learned: LearnedMap) -> tuple[float, float, float, float]:
+def _bounds(learned: StateMap) -> tuple[float, float, float, float]:
     """Return what of the plane is shown [m]: the usual part, or more if need be."""
     x_low, x_high, y_low, y_high = _MAP_M
     if len(learned.waist_m):
@@ -225,7 +224,7 @@ def _bar(shares: list[tuple[float, str]]) -> str:
 def _keys(keys: list[tuple[Colour, str]]) -> str:
     return (
         '<div style="display:flex;flex-wrap:wrap;gap:1px 12px;font-size:11px;'
-        f'color:{_SOFT};padding:2px">'
+        f'color:{_SOFT};padding:2px 0">'
         + "".join(
             f'<span style="white-space:nowrap"><span style="display:inline-block;'
             f"width:9px;height:9px;border-radius:2px;margin-right:5px;"

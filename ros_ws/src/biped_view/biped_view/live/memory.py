@@ -12,15 +12,18 @@ from biped_bringup.run_settings import RunSettings
 from biped_common.errors import BipedError
 from biped_common.settings import from_mapping
 from biped_common.timing import seconds
-from biped_lab.report.maps import LearnedMap, NoMapError, read_map
-from biped_view.live.moment import Episodes, LearnerFigures
+from biped_view.live.moment import Episodes, LearnerFigures, StateMap
 from biped_view.live.page import Page
 from learner_node.checkpoint import read_checkpoint, taking_over
 from learner_node.walking.session import LearningSession
+from learner_node.walking.task import INPUT_NAMES, N_DISCRETE
 from msgs_json.end_cause import EndCause
 from msgs_json.learner_status import LearnerStatus
 
 _LOOK_S: Final = 2.0
+_WAIST: Final = [
+    INPUT_NAMES.index(name) - N_DISCRETE for name in ("waist_x", "waist_y")
+]
 
 
 class Memory(NamedTuple):
@@ -28,7 +31,7 @@ class Memory(NamedTuple):
 
     figures: LearnerFigures
     episodes: Episodes
-    states: LearnedMap | None
+    states: StateMap | None
     """None of a learner without modes."""
 
 
@@ -59,10 +62,19 @@ def read_memory(path: Path) -> Memory:
         log["t_err"],
         log["end_cause"] == completed,
     )
-    try:
-        return Memory(figures, episodes, read_map(path))
-    except NoMapError:
-        return Memory(figures, episodes, None)
+    return Memory(figures, episodes, _states(session))
+
+
+def _states(session: LearningSession) -> StateMap | None:
+    memory = session.learner.memory()
+    if not {"fixed", "penalty_state"} <= memory.keys():
+        return None
+    radii = np.array(session.settings.inputs.radii)[_WAIST]
+    return StateMap(
+        memory["state_centers"][:, _WAIST] * radii,
+        memory["fixed"],
+        memory["penalty_state"],
+    )
 
 
 def figures_of(

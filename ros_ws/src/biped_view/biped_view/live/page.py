@@ -17,7 +17,6 @@ import viser
 
 from biped_common.errors import BipedError
 from biped_description.robot import Robot
-from biped_lab.report.maps import LearnedMap
 from biped_view.floor_scene import FloorScene
 from biped_view.live import cards
 from biped_view.live.moment import (
@@ -26,6 +25,7 @@ from biped_view.live.moment import (
     Episodes,
     LearnerFigures,
     Moment,
+    StateMap,
     Traces,
 )
 from biped_view.live.plots import Plots
@@ -37,9 +37,8 @@ FIRST_PORT: Final = 8080
 FRAME_S: Final = 1.0 / 30.0
 _PLOT_S: Final = 0.2
 _PANEL_PX: Final = 320
-_CAMERA_M, _LOOK_AT_M = (1.75, -1.45, 0.95), (0.28, 0.0, 0.42)
+_CAMERA_M, _LOOK_AT_M = (1.45, -1.1, 0.85), (0.25, 0.0, 0.44)
 _PATH_POINTS: Final = 150
-_BRAND: Final = (0, 114, 178)
 
 
 class PortError(BipedError):
@@ -69,7 +68,9 @@ class Page:
             PortError: the port is taken.
         """
         with redirect_stdout(io.StringIO()):  # viser announces itself
-            self._server = _Server(HOST, FIRST_PORT if port is None else port, title)
+            self._server = _Server(
+                HOST, FIRST_PORT if port is None else port, title, verbose=False
+            )
         bound = self._server.get_port()
         if port and bound != port:
             self.close()
@@ -84,7 +85,7 @@ class Page:
         self._traces = NO_TRACES
         self._episodes: Episodes | None = None
         self._figures: LearnerFigures | None = None
-        self._map: tuple[LearnedMap, str] | None = None
+        self._map: tuple[StateMap, str] | None = None
         self._head: tuple[str, str, Colour] = ("Waiting", "", self._theme.soft)
         self._stale = {"moment", "plots", "cards"}
         self._plotted_at = 0.0
@@ -145,7 +146,7 @@ class Page:
         self._figures = figures
         self._stale.add("cards")
 
-    def show_map(self, learned: LearnedMap, as_of: str) -> None:
+    def show_map(self, learned: StateMap, as_of: str) -> None:
         """Show the learner's states; `as_of` says how old they are."""
         self._map = learned, as_of
         self._stale.add("cards")
@@ -271,7 +272,7 @@ class Page:
             dark_mode=theme.dark,
             show_logo=False,
             show_share_button=False,
-            brand_color=_BRAND,
+            brand_color=theme.zmp_reference,
         )
         self._legend.content = cards.legend(theme)
         if self._floor is not None:

@@ -76,7 +76,7 @@ class Plots:
                     legend={"show": True, "live": False},
                     cursor={"show": False},
                     height=_HEIGHT_PX,
-                    padding=(0, 16, 0, 0),
+                    padding=(8, 16, 0, 0),
                     order=3.0,
                 ),
             ]
@@ -127,7 +127,7 @@ class Plots:
             legend={"show": True, "live": False},
             cursor={"show": False},
             height=_HEIGHT_PX,
-            padding=(0, 16, 0, 0),
+            padding=(8, 16, 0, 0),
             order=order,
         )
 

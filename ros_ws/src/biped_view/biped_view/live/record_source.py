@@ -120,5 +120,5 @@ class RecordSource:
         if tick > ends[-1]:  # the piece of a learning tick in which it ended
             ends = np.append(ends, tick)
             worst = np.append(worst, self._errors[ends[-2] + 1 : tick + 1].max())
-        time_s: Array = (ends + 1) * _PERIOD_S
+        time_s = np.array([seconds(int(each) + 1) for each in ends])
         return Traces(time_s, worst, self._record.correction_m[ends])
