@@ -43,6 +43,7 @@ FROM_PIP = {
     "stable_baselines3": "stable-baselines3",
     "submitit": "submitit",
     "threadpoolctl": "threadpoolctl",
+    "viser": "viser",
     "zstandard": "zstandard",
 }
 """Named in a comment of package.xml: rosdep has no key, or none for Jazzy's Ubuntu."""

@@ -10,4 +10,8 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
     ],
+    entry_points={
+        "console_scripts": ["view = biped_view.live.node:main"],
+        "biped.verbs": ["view = biped_view.verbs.view:add_parser"],
+    },
 )

@@ -1,7 +1,7 @@
 """What is drawn around the robot: floor, soles, support, ZMP and limit, waist paths.
 
 What lies on the floor lies a little above it, one above the other, so that nothing
-flickers. ZMP, reference and limit are drawn above the soles, which would hide them.
+flickers. ZMP, limit and outlines are drawn above the soles, which would hide them.
 """
 
 from __future__ import annotations
@@ -150,9 +150,8 @@ class FloorScene:
             side="double",
             cast_shadow=False,
         )
-        self._line(
-            f"{name}/outline", _at(_closed(hull), _OUTLINE_Z), self._theme.support
-        )
+        outline = _at(_closed(hull), self._lift_m + _OUTLINE_Z)
+        self._line(f"{name}/outline", outline, self._theme.support)
 
     def draw_path(self, which: str, points_m: ArrayLike) -> None:
         """Draw a path, in the colour of what it is.

@@ -83,10 +83,10 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         help="learn, or walk, on the ROS 2 graph: three nodes, supervised",
         description="Start a live page, a recorder of every topic, trajectory_node, "
         "learner_node and sim_node as processes, watch them, restart them, and end "
-        "them all, the recorder last. A recorder that cannot go on (disk full, folder unusable) does "
-        "not stop the walk. Ends when the walk is learned, or "
-        "after --episodes. Exit status 0 when learned (or walked, with --greedy), 1 "
-        "when not, or when something could not be saved, 2 for wrong input, 3 when a "
+        "them all, the recorder last. A page or a recorder that cannot go on (disk "
+        "full, folder unusable) does not stop the walk. Ends when the walk is learned, "
+        "or after --episodes. Exit status 0 when learned (or walked, with --greedy), "
+        "1 when not, or when something could not be saved, 2 for wrong input, 3 when a "
         "node could not be kept running, 130 when interrupted.",
     )
     parser.add_argument(

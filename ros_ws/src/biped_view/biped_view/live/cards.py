@@ -140,18 +140,22 @@ def note(text: str) -> str:
 
 def legend(theme: Theme) -> str:
     """Return what the colours of the scene mean."""
-    return _keys(
-        [
-            (theme.zmp, "ZMP"),
-            (theme.zmp_reference, "its reference"),
-            (theme.limit, "limit of its error"),
-            (theme.support, "support polygon"),
-            (theme.static_waist, "planned waist"),
-            (theme.waist, "corrected waist"),
-            (theme.waist_ahead, "waist, ahead"),
-            (theme.left, "left foot"),
-            (theme.right, "right foot"),
-        ]
+    return (
+        '<div style="padding:0 8px">'
+        + _keys(
+            [
+                (theme.zmp, "ZMP"),
+                (theme.zmp_reference, "its reference"),
+                (theme.limit, "limit of its error"),
+                (theme.support, "support polygon"),
+                (theme.static_waist, "planned waist"),
+                (theme.waist, "corrected waist"),
+                (theme.waist_ahead, "waist, ahead"),
+                (theme.left, "left foot"),
+                (theme.right, "right foot"),
+            ]
+        )
+        + "</div>"
     )
 
 
