@@ -96,6 +96,7 @@ class GraphSource:
             for name, kind in (
                 (f"{topics.SIM_NODE}/pause", SetBool),
                 (f"{topics.SIM_NODE}/reset", Trigger),
+                (f"{topics.SIM_NODE}/push", SetBool),
                 (f"{topics.LEARNER_NODE}/freeze", SetBool),
                 (f"{topics.LEARNER_NODE}/save_memory", Trigger),
             )
@@ -143,6 +144,7 @@ class GraphSource:
     def _add_buttons(self) -> None:
         add = self._page.add_buttons
         add("Robot", ("Pause", "Resume", "Reset"), self._pressed)
+        add("Push it", ("to its left", "to its right"), self._pressed)
         add("Learner", ("Freeze", "Learn", "Save"), self._pressed)
 
     def _pressed(self, button: str) -> None:
@@ -150,6 +152,8 @@ class GraphSource:
             "Pause": (f"{topics.SIM_NODE}/pause", {"data": True}),
             "Resume": (f"{topics.SIM_NODE}/pause", {"data": False}),
             "Reset": (f"{topics.SIM_NODE}/reset", {}),
+            "to its left": (f"{topics.SIM_NODE}/push", {"data": True}),
+            "to its right": (f"{topics.SIM_NODE}/push", {"data": False}),
             "Freeze": (f"{topics.LEARNER_NODE}/freeze", {"data": True}),
             "Learn": (f"{topics.LEARNER_NODE}/freeze", {"data": False}),
             "Save": (f"{topics.LEARNER_NODE}/save_memory", {}),
