@@ -20,7 +20,7 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.parameter import parameter_value_to_python
 from rclpy.serialization import deserialize_message
 from std_srvs.srv import SetBool, Trigger
-from visualization_msgs.msg import MarkerArray
+from visualization_msgs.msg import Marker, MarkerArray
 
 from biped_common.errors import BipedError
 from biped_common.settings import from_mapping, nested, overlay, to_mapping
@@ -32,7 +32,7 @@ from biped_ros.cdr import string_text
 from biped_ros.markers import torso_pose_template
 from biped_ros.messages import correction_template, joint_state_template
 from biped_ros.parameters import flattened
-from biped_view.live.memory import MemoryFile, figures_of
+from biped_view.live.memory import MemoryFile, figures_of, show_states
 from biped_view.live.moment import Array, Course, Episodes, Moment, Traces
 from biped_view.live.page import Page
 from biped_view.live.polled import PolledService, PolledTopic
@@ -47,6 +47,8 @@ from trajectory_node.waist_reference import WaistReference
 
 NAME: Final = "view"
 _SILENT_S: Final = 2.0
+_MARKERS: Final = {"zmp", "zmp_reference", "waist_planned"}
+_NOTHING: Final = np.zeros((0, 3))
 _ASK_AGAIN_S: Final = 2.0
 _COURSE_PARAMETERS: Final = ("robot.", "gait.", "correction.")
 
@@ -102,8 +104,12 @@ class GraphSource:
             )
         }
         self._joint_position: Array | None = None
-        self._limit_m: float | None = None
         self._drawn: dict[str, Array] = {}
+        """Points of the last markers, by name."""
+        self._marker_message: bytes | None = None
+        self._torso_pose = np.zeros(7)
+        """Position [m] and quaternion (x, y, z, w)."""
+        self._limit_m: float | None = None
         self._walk = "", 0
         self._seen: list[Observation] = []
         self._chosen: dict[int, Array] = {}
@@ -112,7 +118,8 @@ class GraphSource:
         self._plan: WalkPlan | None = None
         self._status: LearnerStatus | None = None
         self._last_walk = ""
-        self._t_err: list[tuple[int, float, bool]] = []
+        self._episodes: dict[int, tuple[float, bool]] = {}
+        """T_err, and whether the target was reached, by number."""
         self._heard_at = -_SILENT_S
         self._paused = False
         self._staged: tuple[str, float, WalkPlan] | None = None
@@ -130,8 +137,7 @@ class GraphSource:
         except MalformedMessageError as error:
             self._page.show_state("Not understood", str(error), good=False)
             return
-        if self._memory is not None:
-            self._memory.look(self._page)
+        self._look_at_memory()
         self._show_state()
 
     def close(self) -> None:
@@ -174,7 +180,7 @@ class GraphSource:
         if description is not None:  # the robot has come, or come anew
             self._urdf, self._staged = string_text(description), None
             self._course_asked_at, self._paused = None, False
-            self._joint_position, self._limit_m, self._drawn = None, None, {}
+            self._joint_position = self._marker_message = self._limit_m = None
             self._forget()
         plan = self._plans.last()
         if plan is not None:
@@ -182,7 +188,12 @@ class GraphSource:
             self._course_asked_at = None
         status = self._statuses.last()
         if status is not None:
-            self._status = decode(LearnerStatus, string_text(status))
+            former, self._status = (
+                self._status,
+                decode(LearnerStatus, string_text(status)),
+            )
+            if former is not None and former.seed != self._status.seed:
+                self._episodes.clear()  # another run
             walk_s = None if self._plan is None else seconds(self._plan.walk_ticks)
             self._page.show_learner(figures_of(self._status, walk_s))
         for message in self._results.take():
@@ -195,18 +206,36 @@ class GraphSource:
         )
         counts = result.learning and not result.end_cause.from_outside
         if counts and result.cost is not None and self._status is not None:
-            self._t_err.append(
-                (self._status.episodes, result.cost.total, result.completed)
+            number = self._status.episodes
+            self._episodes[number] = result.cost.total, result.completed
+            self._show_episodes()
+
+    def _look_at_memory(self) -> None:
+        memory = None if self._memory is None else self._memory.look()
+        if memory is None:
+            return
+        show_states(self._page, memory, "As of the last checkpoint")
+        former = memory.episodes
+        rows = zip(
+            former.number.astype(int),
+            former.t_err.tolist(),
+            former.completed.tolist(),
+            strict=True,
+        )
+        self._episodes |= {number: (t_err, done) for number, t_err, done in rows}
+        if self._episodes:
+            self._show_episodes()
+
+    def _show_episodes(self) -> None:
+        numbers = sorted(self._episodes)
+        t_err, completed = zip(*(self._episodes[n] for n in numbers), strict=True)
+        self._page.show_episodes(
+            Episodes(
+                np.array(numbers, dtype=np.float64),
+                np.array(t_err, dtype=np.float64),
+                np.array(completed, dtype=np.bool_),
             )
-            if self._memory is None:
-                number, t_err, completed = zip(*self._t_err, strict=True)
-                self._page.show_episodes(
-                    Episodes(
-                        np.array(number, dtype=np.float64),
-                        np.array(t_err),
-                        np.array(completed, dtype=np.bool_),
-                    )
-                )
+        )
 
     def _take_walk(self) -> None:
         """Take in observations and corrections."""
@@ -222,53 +251,61 @@ class GraphSource:
                 self._walk = seen.simulation, seen.episode
             self._seen.append(seen)
         if observations:
-            self._page.show_traces(self._traces())
+            self._page.show_traces(self._traces)
 
     def _take_moment(self) -> None:
-        torso, joints, markers = (
-            topic.last() for topic in (self._torso, self._joints, self._markers)
-        )
-        if joints is not None:
-            read = self._joint_template.read(joints)
-            if read is not None:
-                self._joint_position = read[0][: len(JOINT_NAMES)]
-        if markers is not None:
-            self._take_markers(deserialize_message(markers, MarkerArray))
-        if torso is None:
-            return
-        read = self._torso_template.read(torso)
+        """Take in where the robot is; markers are read when somebody looks."""
+        joints, torso = self._joints.last(), self._torso.last()
+        self._marker_message = self._markers.last() or self._marker_message
+        if joints is not None and (read := self._joint_template.read(joints)):
+            self._joint_position = read[0][: len(JOINT_NAMES)]
+        read = None if torso is None else self._torso_template.read(torso)
         if read is None:
             return
         self._heard_at, self._paused = time.monotonic(), False
         if self._observations is None:
             self._observations = PolledTopic(self._node, topics.OBSERVATION)
-        position, (x, y, z, w) = read[0][:3], read[0][3:]
-        self._waist.append(position)
-        if not self._on_stage() or self._joint_position is None:
-            return
-        drawn = self._drawn
-        self._page.show_moment(
-            Moment(
-                torso_position_m=position,
-                torso_quaternion=np.array((w, x, y, z)),
-                joint_position_rad=self._joint_position,
-                zmp_m=drawn["zmp"][0, :2],
-                zmp_reference_m=drawn["zmp_reference"][0, :2],
-                support_m=drawn["support_polygon"][:, :2],
-                waist_m=np.array(self._waist),
-                waist_ahead_m=drawn["waist_planned"],
-            )
+        self._torso_pose = read[0]
+        self._waist.append(read[0][:3])
+        if self._limit_m is None:
+            self._read_markers()
+        if self._joint_position is not None and self._on_stage():
+            self._page.show_moment(self._moment)
+
+    def _moment(self) -> Moment:
+        """Return what was heard last."""
+        assert self._joint_position is not None
+        self._read_markers()
+        x, y, z, w = self._torso_pose[3:]
+        return Moment(
+            torso_position_m=self._torso_pose[:3],
+            torso_quaternion=np.array((w, x, y, z)),
+            joint_position_rad=self._joint_position,
+            zmp_m=self._drawn["zmp"][0, :2],
+            zmp_reference_m=self._drawn["zmp_reference"][0, :2],
+            support_m=self._drawn.get("support_polygon", _NOTHING)[:, :2],
+            waist_m=np.array(self._waist),
+            waist_ahead_m=self._drawn["waist_planned"],
         )
 
-    def _take_markers(self, message: MarkerArray) -> None:
-        for marker in message.markers:
+    def _read_markers(self) -> None:
+        """Read the last markers, if they are the robot's."""
+        if self._marker_message is None:
+            return
+        try:
+            markers = deserialize_message(self._marker_message, MarkerArray).markers
+        except Exception:  # of a stranger; rclpy raises what the bytes make it raise
+            return
+        drawn: dict[str, Array] = {}
+        limit_m = None
+        for marker in markers:
             if marker.ns == "zmp_limit":
-                self._limit_m = marker.scale.x / 2.0
-            points = marker.points or [marker.pose.position]
-            drawn = [(point.x, point.y, point.z) for point in points]
-            if marker.ns == "support_polygon" and not marker.points:
-                drawn = []
-            self._drawn[marker.ns] = np.array(drawn).reshape(-1, 3)
+                limit_m = marker.scale.x / 2.0
+            if marker.action == Marker.ADD:
+                points = marker.points or [marker.pose.position]
+                drawn[marker.ns] = np.array([(p.x, p.y, p.z) for p in points])
+        if limit_m is not None and drawn.keys() >= _MARKERS:
+            self._drawn, self._limit_m = drawn, limit_m
 
     # -- the stage -------------------------------------------------------------------
 

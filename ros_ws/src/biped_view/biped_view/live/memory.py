@@ -118,11 +118,12 @@ def show_memory(page: Page, path: Path) -> None:
     """
     memory = read_memory(path)
     page.show_learner(memory.figures)
-    _show(page, memory, "As in the memory file")
-
-
-def _show(page: Page, memory: Memory, as_of: str) -> None:
     page.show_episodes(memory.episodes)
+    show_states(page, memory, "As in the memory file")
+
+
+def show_states(page: Page, memory: Memory, as_of: str) -> None:
+    """Show the states of a memory, if it has modes, and how old they are."""
     if memory.states is not None:
         episodes = memory.figures.episodes
         page.show_map(memory.states, f"{as_of}, after {episodes:,} episodes.")
@@ -137,17 +138,16 @@ class MemoryFile:
         self._looked_at = -_LOOK_S
         self._seen: tuple[int, int] | None = None
 
-    def look(self, page: Page) -> None:
-        """Show the file's states, if it has been written anew."""
+    def look(self) -> Memory | None:
+        """Return what the file tells, if it has been written anew."""
         if time.monotonic() - self._looked_at < _LOOK_S:
-            return
+            return None
         self._looked_at = time.monotonic()
         try:
             found = self._path.stat()
             if (found.st_mtime_ns, found.st_ino) == self._seen:
-                return
+                return None
             self._seen = found.st_mtime_ns, found.st_ino
-            memory = read_memory(self._path)
+            return read_memory(self._path)
         except (OSError, BipedError):  # not written yet, or just being replaced
-            return
-        _show(page, memory, "As of the last checkpoint")
+            return None

@@ -35,7 +35,7 @@ from biped_view.theme import DARK, LIGHT, Colour
 HOST: Final = "127.0.0.1"
 FIRST_PORT: Final = 8080
 FRAME_S: Final = 1.0 / 30.0
-_PLOT_S: Final = 0.2
+_PLOT_S, _PATHS_S = 0.2, 0.1
 _PANEL_PX: Final = 320
 _CAMERA_M, _LOOK_AT_M = (1.45, -1.1, 0.85), (0.25, 0.0, 0.44)
 _PATH_POINTS: Final = 150
@@ -81,14 +81,14 @@ class Page:
         self._floor: FloorScene | None = None
         self._robot: RobotScene | None = None
         self._course: Course | None = None
-        self._moment: Moment | None = None
-        self._traces = NO_TRACES
+        self._moment: Callable[[], Moment] | None = None
+        self._traces: Callable[[], Traces] = lambda: NO_TRACES
         self._episodes: Episodes | None = None
         self._figures: LearnerFigures | None = None
         self._map: tuple[StateMap, str] | None = None
         self._head: tuple[str, str, Colour] = ("Waiting", "", self._theme.soft)
         self._stale = {"moment", "plots", "cards"}
-        self._plotted_at = 0.0
+        self._plotted_at = self._paths_at = 0.0
         self._plots: Plots | None = None
         self._lay_out()
 
@@ -126,13 +126,13 @@ class Page:
         self._course = course
         self._paint_course()
 
-    def show_moment(self, moment: Moment) -> None:
-        """Show the robot, when somebody looks."""
+    def show_moment(self, moment: Callable[[], Moment]) -> None:
+        """Show the robot; `moment` is called when it is drawn, if somebody looks."""
         self._moment = moment
         self._stale.add("moment")
 
-    def show_traces(self, traces: Traces) -> None:
-        """Show what was measured along the walk."""
+    def show_traces(self, traces: Callable[[], Traces]) -> None:
+        """Show what was measured along the walk; called when it is drawn."""
         self._traces = traces
         self._stale.add("plots")
 
@@ -216,7 +216,7 @@ class Page:
             self._plotted_at = time.monotonic()
             if "plots" in self._stale and self._plots is not None:
                 self._stale.remove("plots")
-                self._plots.show_walk(self._traces)
+                self._plots.show_walk(self._traces())
                 if self._episodes is not None:
                     self._plots.show_episodes(self._episodes)
             if "cards" in self._stale:
@@ -250,7 +250,7 @@ class Page:
             self._learner = gui.add_html(cards.note("Nothing heard of a learner."))
         with gui.add_folder("States over the waist plane"):
             self._state_map = gui.add_html(
-                cards.note("Which states there are is known from a memory file only.")
+                cards.note("Known from a memory file; none has been read yet.")
             )
         dark = gui.add_checkbox("Dark", self._theme.dark)
         dark.on_update(lambda event: self._ask(lambda: self._dark(event.target.value)))
@@ -294,9 +294,9 @@ class Page:
             self._floor.draw_path(which, path[::stride])
 
     def _draw_moment(self) -> None:
-        moment = self._moment
-        if moment is None or self._robot is None or self._floor is None:
+        if self._moment is None or self._robot is None or self._floor is None:
             return
+        moment = self._moment()
         with self._server.atomic():
             self._robot.move(
                 moment.torso_position_m,
@@ -305,8 +305,11 @@ class Page:
             )
             self._floor.place_zmp(moment.zmp_m, moment.zmp_reference_m)
             self._floor.place_polygon(moment.support_m)
-            self._floor.draw_path("waist", moment.waist_m)
-            self._floor.draw_path("waist_ahead", moment.waist_ahead_m)
+            if time.monotonic() - self._paths_at >= _PATHS_S:
+                self._paths_at = time.monotonic()
+                stride = max(1, len(moment.waist_m) // _PATH_POINTS)
+                self._floor.draw_path("waist", moment.waist_m[::stride])
+                self._floor.draw_path("waist_ahead", moment.waist_ahead_m)
 
     def _draw_cards(self) -> None:
         self._headline.content = cards.headline(*self._head)

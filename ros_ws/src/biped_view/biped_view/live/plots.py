@@ -88,14 +88,15 @@ class Plots:
         self._plots = []
 
     def show_walk(self, traces: Traces) -> None:
-        """Draw what was measured along a walk."""
-        time = traces.time_s if len(traces.time_s) else np.zeros(1)
-        error, correction = traces.zmp_error_m, traces.correction_m
-        if not len(error):
-            error, correction = np.full(1, np.nan), np.full((1, 2), np.nan)
-        limit = np.full(len(time), self._limit_mm)
-        self._plots[0].data = (time, _MM * error, limit)
-        self._plots[1].data = (time, _MM * correction[:, 0], _MM * correction[:, 1])
+        """Draw what was measured along a walk, over the time of the whole walk."""
+        nothing = np.full(1, np.nan)
+        time_s = np.concatenate(([0.0], traces.time_s, [self._walk_s]))
+        error, dx, dy = (
+            np.concatenate((nothing, _MM * values, nothing))
+            for values in (traces.zmp_error_m, *traces.correction_m.T)
+        )
+        self._plots[0].data = (time_s, error, np.full(len(time_s), self._limit_mm))
+        self._plots[1].data = (time_s, dx, dy)
 
     def show_episodes(self, episodes: Episodes) -> None:
         """Draw T_err of the episodes."""
@@ -120,7 +121,7 @@ class Plots:
             ({"label": "time"}, _line(*first), _line(*second)),
             title=title,
             scales={
-                "x": {"time": False, "range": (0.0, self._walk_s)},
+                "x": {"time": False},
                 "y": {"range": y_range},
             },
             axes=_axes(),

@@ -80,35 +80,31 @@ class RecordSource:
     def _show(self, time_s: float) -> None:
         record, page = self._record, self._page
         tick = min(record.ticks - 1, round(time_s / _PERIOD_S))
-        stance = (
-            record.right_foot_m if record.right_support[tick] else record.left_foot_m
-        )
-        feet = (
-            np.array([record.left_foot_m[tick], record.right_foot_m[tick]])
-            if record.double_support[tick]
-            else stance[tick : tick + 1]
-        )
-        page.show_moment(
-            Moment(
-                torso_position_m=record.torso_position_m[tick],
-                torso_quaternion=record.torso_quaternion[tick],
-                joint_position_rad=record.joint_position_rad[tick],
-                zmp_m=record.zmp_m[tick],
-                zmp_reference_m=record.zmp_reference_m[tick],
-                support_m=sole_corners(record.robot, feet),
-                waist_m=record.waist_m[: tick + 1 : _WAY_STRIDE_TICKS],
-                waist_ahead_m=record.waist_m[tick : tick + _AHEAD_TICKS],
-            )
-        )
-        page.show_traces(self._traces(tick))
+        page.show_moment(lambda: self._moment(tick))
+        page.show_traces(lambda: self._traces(tick))
         phase = "double support" if record.double_support[tick] else "single support"
         side = "right" if record.right_support[tick] else "left"
         detail = f"{time_s:.2f} s, {phase}, {side}"
         if tick == record.ticks - 1 and record.end_cause is not None:
-            detail = (
-                f"ended: {str(record.end_cause).replace('_', ' ')} at {time_s:.2f} s"
-            )
+            cause = str(record.end_cause).replace("_", " ")
+            detail = f"ended: {cause} at {time_s:.2f} s"
         page.show_state("Playing" if self._playing else "Stopped", detail, good=True)
+
+    def _moment(self, tick: int) -> Moment:
+        record = self._record
+        feet = np.array([record.left_foot_m[tick], record.right_foot_m[tick]])
+        if not record.double_support[tick]:
+            feet = feet[[int(record.right_support[tick])]]
+        return Moment(
+            torso_position_m=record.torso_position_m[tick],
+            torso_quaternion=record.torso_quaternion[tick],
+            joint_position_rad=record.joint_position_rad[tick],
+            zmp_m=record.zmp_m[tick],
+            zmp_reference_m=record.zmp_reference_m[tick],
+            support_m=sole_corners(record.robot, feet),
+            waist_m=record.waist_m[: tick + 1 : _WAY_STRIDE_TICKS],
+            waist_ahead_m=record.waist_m[tick : tick + _AHEAD_TICKS],
+        )
 
     def _traces(self, tick: int) -> Traces:
         """Return what was measured up to a tick, a row per learning tick."""
