@@ -91,6 +91,10 @@ class Page:
         self._plotted_at = self._paths_at = 0.0
         self._plots: Plots | None = None
         self._lay_out()
+        # Whoever comes gets plots drawn anew, once they have their size.
+        self._server.on_client_connect(
+            lambda _: self._ask(lambda: self._stale.add("plots"))
+        )
 
     # -- what a source tells ---------------------------------------------------------
 

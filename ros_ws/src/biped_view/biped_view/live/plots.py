@@ -42,7 +42,7 @@ class Plots:
         self._gui, self._tab = gui, tab
         self._limit_mm = _MM * zmp_limit_m
         self._plots: list[viser.GuiUplotHandle] = []
-        self._walk_s = walk_s
+        self._walk_s, self._wiggle = walk_s, 0.0
 
     def paint(self, theme: Theme) -> None:
         """Make the plots, anew if need be, in the colours of a theme."""
@@ -90,7 +90,11 @@ class Plots:
     def show_walk(self, traces: Traces) -> None:
         """Draw what was measured along a walk, over the time of the whole walk."""
         nothing = np.full(1, np.nan)
-        time_s = np.concatenate(([0.0], traces.time_s, [self._walk_s]))
+        # uPlot leaves out the ticks of an axis that had no width when it was made,
+        # until its scale changes.
+        self._wiggle = 1.0 - self._wiggle
+        end_s = self._walk_s * (1.0 + 1e-9 * self._wiggle)
+        time_s = np.concatenate(([0.0], traces.time_s, [end_s]))
         error, dx, dy = (
             np.concatenate((nothing, _MM * values, nothing))
             for values in (traces.zmp_error_m, *traces.correction_m.T)
@@ -102,7 +106,7 @@ class Plots:
         """Draw T_err of the episodes."""
         if len(episodes.number):
             self._plots[2].data = (
-                episodes.number,
+                episodes.number * (1.0 + 1e-9 * self._wiggle),
                 np.where(episodes.completed, episodes.t_err, np.nan),
                 np.where(episodes.completed, np.nan, episodes.t_err),
             )
