@@ -120,7 +120,7 @@ class Browser:
         return np.asarray(Image.open(BytesIO(png)).convert("L"), dtype=np.int16)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def open_tab() -> Iterator[Callable[[str], Browser]]:
     """Open addresses in tabs of one Chromium."""
     if not CHROMIUM.exists():

@@ -70,7 +70,6 @@ def test_pause_stops_the_clock_and_resume_lets_it_go_on(tab, ticking):
 def test_a_second_tab_shows_the_same(tab, open_tab, address):
     second = open_tab(address)
     second.shows("Walking")
-    second.shows("Target time")
     second.page.close()
 
 
