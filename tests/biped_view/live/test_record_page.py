@@ -79,4 +79,8 @@ def test_a_walk_plays_stops_and_is_scrubbed(record_address, open_tab):
     time_s.press("Enter")
     tab.shows("ended: zmp error at 2.00 s")
     until(lambda: (abs(tab.robot() - upright) > 15).sum() > 50, "the robot leans")
+    tab.page.evaluate(
+        "[...document.querySelectorAll('input[type=checkbox]')].pop().click()"
+    )
+    until(lambda: tab.robot()[0].mean() < 100, "it is dark")
     assert tab.errors == []

@@ -78,6 +78,7 @@ class RobotScene:
             _add_shapes(scene, paths[child], links[child], colours)
         self._frames = [joints[each][0] for each in JOINT_NAMES]
         self._axes = np.array([joints[each][1] for each in JOINT_NAMES])
+        self._angles_rad = np.zeros(len(JOINT_NAMES))
 
     def move(
         self,
@@ -94,10 +95,12 @@ class RobotScene:
         """
         self._torso.position = np.asarray(torso_position_m, dtype=np.float64)
         self._torso.wxyz = np.asarray(torso_quaternion_wxyz, dtype=np.float64)
-        half = np.asarray(joint_position_rad, dtype=np.float64)[:, None] / 2
+        angles = np.array(joint_position_rad, dtype=np.float64)
+        half = angles[:, None] / 2
         turns = np.hstack((np.cos(half), np.sin(half) * self._axes))
-        for frame, turn in zip(self._frames, turns, strict=True):
-            frame.wxyz = turn
+        for joint in np.flatnonzero(angles != self._angles_rad):
+            self._frames[joint].wxyz = turns[joint]
+        self._angles_rad = angles
 
     def show(self, visible: bool) -> None:
         """Show the robot, or hide it."""

@@ -89,7 +89,6 @@ class Page:
         self._head: tuple[str, str, Colour] = ("Waiting", "", self._theme.soft)
         self._stale = {"moment", "plots", "cards"}
         self._plotted_at = self._paths_at = 0.0
-        self._plots: Plots | None = None
         self._lay_out()
         # Whoever comes gets plots drawn anew, once they have their size.
         self._server.on_client_connect(
@@ -120,9 +119,7 @@ class Page:
         )
         self._floor = FloorScene(scene, table, zmp_limit_m, self._theme)
         self._course = None
-        if self._plots is not None:
-            self._plots.remove()
-        self._plots = Plots(self._server.gui, self._plot_tab, zmp_limit_m, walk_s)
+        self._plots.set_walk(zmp_limit_m, walk_s)
         self._paint()
 
     def set_course(self, course: Course) -> None:
@@ -218,7 +215,7 @@ class Page:
             self._draw_moment()
         if time.monotonic() - self._plotted_at >= _PLOT_S:
             self._plotted_at = time.monotonic()
-            if "plots" in self._stale and self._plots is not None:
+            if "plots" in self._stale:
                 self._stale.remove("plots")
                 self._plots.show_walk(self._traces())
                 if self._episodes is not None:
@@ -259,11 +256,11 @@ class Page:
         dark = gui.add_checkbox("Dark", self._theme.dark)
         dark.on_update(lambda event: self._ask(lambda: self._dark(event.target.value)))
         side = gui.add_panel()
-        self._plot_tab = side.add_tab("Walk and episodes")
         side.dock_left()
         side.set_width(_PANEL_PX)
-        with self._plot_tab:
-            self._legend = gui.add_html(cards.legend(self._theme), order=100.0)
+        with side.add_tab("Walk and episodes"):
+            self._plots = Plots(gui, self._theme)
+            self._legend = gui.add_html(cards.legend(self._theme))
         self._paint()
 
     def _dark(self, dark: bool) -> None:
@@ -282,8 +279,7 @@ class Page:
         if self._floor is not None:
             self._floor.paint(theme)
             self._paint_course()
-        if self._plots is not None:
-            self._plots.paint(theme)
+        self._plots.paint(theme)
         self._stale |= {"moment", "plots", "cards"}
 
     def _paint_course(self) -> None:

@@ -7,85 +7,66 @@ from typing import Any, Final
 import numpy as np
 import viser
 
-from biped_view.live.moment import Array, Episodes, Traces
-from biped_view.theme import Theme, css
+from biped_view.live.moment import Episodes, Traces
+from biped_view.theme import Colour, Theme, css
 
 _HEIGHT_PX: Final = 168
 _MM = 1000.0
 _ERROR_HEADROOM: Final = 1.35  # of the limit
-_CORRECTION_MM: Final = 30.0
+_CORRECTION_SCALE: Final[Any] = {"range": (-30.0, 30.0)}  # [mm]
+_LOGARITHMIC: Final[Any] = {"distr": 3}
 _EMPTY: Final = np.array([0.0, 0.0])
-_AXIS: Final[dict[str, Any]] = {
-    "font": "11px sans-serif",
-    "labelFont": "11px sans-serif",
-}
+_FONTS: Final[Any] = {"font": "11px sans-serif", "labelFont": "11px sans-serif"}
+_AXES: Final[Any] = ({**_FONTS, "size": 32}, {**_FONTS, "size": 42})
 
 
 class Plots:
-    """The plots of one page, in the container that is open when they are made."""
+    """The plots of one page, in the tab that is open when they are made."""
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        tab: viser.GuiTabHandle,
-        zmp_limit_m: float,
-        walk_s: float,
-    ) -> None:
-        """Draw nothing before `paint`.
+    def __init__(self, gui: viser.GuiApi, theme: Theme) -> None:
+        """Add empty plots.
 
         Args:
             gui: of the page.
-            tab: that holds the plots.
-            zmp_limit_m: at which a walk fails.
-            walk_s: time of the whole walk, the width of the plots over time.
+            theme: of the colours.
         """
-        self._gui, self._tab = gui, tab
-        self._limit_mm = _MM * zmp_limit_m
-        self._plots: list[viser.GuiUplotHandle] = []
-        self._walk_s, self._wiggle = walk_s, 0.0
+        self._limit_mm = self._walk_s = 1.0
+        self._wiggle = 0.0
+        self._plots = [
+            gui.add_uplot(
+                (_EMPTY, _EMPTY, _EMPTY),
+                series,
+                title=title,
+                scales={"x": {"time": False}, "y": y_scale},
+                axes=_AXES,
+                legend={"show": True, "live": False},
+                cursor={"show": False},
+                height=_HEIGHT_PX,
+                padding=(8, 16, 0, 0),
+            )
+            for title, series, y_scale in zip(
+                ("ZMP error [mm]", "Correction of the waist [mm]", "T_err by episode"),
+                _series(theme),
+                (_error_scale(1.0), _CORRECTION_SCALE, _LOGARITHMIC),
+                strict=True,
+            )
+        ]
 
     def paint(self, theme: Theme) -> None:
-        """Make the plots, anew if need be, in the colours of a theme."""
-        self.remove()
-        with self._tab:
-            self._plots = [
-                self._over_time(
-                    "ZMP error [mm]",
-                    ("error", theme.zmp, 1.6),
-                    ("limit", theme.limit, 1.2),
-                    (0.0, _ERROR_HEADROOM * self._limit_mm),
-                    order=1.0,
-                ),
-                self._over_time(
-                    "Correction of the waist [mm]",
-                    ("x, ahead", theme.zmp_reference, 1.6),
-                    ("y, to the left", theme.waist_ahead, 1.6),
-                    (-_CORRECTION_MM, _CORRECTION_MM),
-                    order=2.0,
-                ),
-                self._gui.add_uplot(
-                    (_EMPTY, _EMPTY, _EMPTY),
-                    (
-                        {"label": "episode"},
-                        _dots("completed", theme.fixed),
-                        _dots("failed", theme.penalty),
-                    ),
-                    title="T_err by episode",
-                    scales={"x": {"time": False}, "y": {"distr": 3}},
-                    axes=_axes(),
-                    legend={"show": True, "live": False},
-                    cursor={"show": False},
-                    height=_HEIGHT_PX,
-                    padding=(8, 16, 0, 0),
-                    order=3.0,
-                ),
-            ]
+        """Draw in the colours of a theme."""
+        for plot, series in zip(self._plots, _series(theme), strict=True):
+            plot.series = series
 
-    def remove(self) -> None:
-        """Take the plots away."""
-        for plot in self._plots:
-            plot.remove()
-        self._plots = []
+    def set_walk(self, zmp_limit_m: float, walk_s: float) -> None:
+        """Fit the plots to a walk.
+
+        Args:
+            zmp_limit_m: at which it fails.
+            walk_s: time of the whole walk, the width of the plots over time.
+        """
+        self._limit_mm, self._walk_s = _MM * zmp_limit_m, walk_s
+        error = self._plots[0]
+        error.scales = {"x": {"time": False}, "y": _error_scale(self._limit_mm)}
 
     def show_walk(self, traces: Traces) -> None:
         """Draw what was measured along a walk, over the time of the whole walk."""
@@ -111,41 +92,33 @@ class Plots:
                 np.where(episodes.completed, np.nan, episodes.t_err),
             )
 
-    def _over_time(
-        self,
-        title: str,
-        first: tuple[str, tuple[int, int, int], float],
-        second: tuple[str, tuple[int, int, int], float],
-        y_range: tuple[float, float],
-        order: float,
-    ) -> viser.GuiUplotHandle:
-        nothing: Array = np.array([np.nan, np.nan])
-        return self._gui.add_uplot(
-            (np.array([0.0, self._walk_s]), nothing, nothing),
-            ({"label": "time"}, _line(*first), _line(*second)),
-            title=title,
-            scales={
-                "x": {"time": False},
-                "y": {"range": y_range},
-            },
-            axes=_axes(),
-            legend={"show": True, "live": False},
-            cursor={"show": False},
-            height=_HEIGHT_PX,
-            padding=(8, 16, 0, 0),
-            order=order,
-        )
+
+def _series(theme: Theme) -> tuple[Any, Any, Any]:
+    """Return what each plot draws."""
+    return (
+        ({"label": "time"}, _line("error", theme.zmp), _line("limit", theme.limit)),
+        (
+            {"label": "time"},
+            _line("x, ahead", theme.zmp_reference),
+            _line("y, to the left", theme.waist_ahead),
+        ),
+        (
+            {"label": "episode"},
+            _dots("completed", theme.fixed),
+            _dots("failed", theme.penalty),
+        ),
+    )
 
 
-def _axes() -> tuple[Any, Any]:
-    return ({**_AXIS, "size": 32}, {**_AXIS, "size": 42})
+def _error_scale(limit_mm: float) -> Any:
+    return {"range": (0.0, _ERROR_HEADROOM * limit_mm)}
 
 
-def _line(label: str, colour: tuple[int, int, int], width: float) -> Any:
-    return {"label": label, "stroke": css(colour), "width": width,
+def _line(label: str, colour: Colour) -> Any:
+    return {"label": label, "stroke": css(colour), "width": 1.5,
             "points": {"show": False}}  # fmt: skip
 
 
-def _dots(label: str, colour: tuple[int, int, int]) -> Any:
+def _dots(label: str, colour: Colour) -> Any:
     return {"label": label, "stroke": css(colour), "width": 0,
             "points": {"show": True, "size": 4, "fill": css(colour)}}  # fmt: skip
