@@ -18,9 +18,7 @@ import numpy as np
 import rclpy
 from rcl_interfaces.srv import GetParameters
 from rclpy.parameter import parameter_value_to_python
-from rclpy.serialization import deserialize_message
 from std_srvs.srv import SetBool, Trigger
-from visualization_msgs.msg import Marker, MarkerArray
 
 from biped_common.errors import BipedError
 from biped_common.settings import from_mapping, nested, overlay, to_mapping
@@ -32,6 +30,7 @@ from biped_ros.cdr import string_text
 from biped_ros.markers import torso_pose_template
 from biped_ros.messages import correction_template, joint_state_template
 from biped_ros.parameters import flattened
+from biped_view.live.marker_reader import MarkerReader
 from biped_view.live.memory import MemoryFile, figures_of, show_states
 from biped_view.live.moment import Array, Course, Episodes, Moment, Traces
 from biped_view.live.page import Page
@@ -47,7 +46,7 @@ from trajectory_node.waist_reference import WaistReference
 
 NAME: Final = "view"
 _SILENT_S: Final = 2.0
-_MARKERS: Final = {"zmp", "zmp_reference", "waist_planned"}
+_MARKERS: Final = {"zmp_limit", "zmp", "zmp_reference", "waist_planned"}
 _NOTHING: Final = np.zeros((0, 3))
 _ASK_AGAIN_S: Final = 2.0
 _COURSE_PARAMETERS: Final = ("robot.", "gait.", "correction.")
@@ -90,6 +89,7 @@ class GraphSource:
         self._torso_template = torso_pose_template(TORSO)
         self._joint_template = joint_state_template(JOINT_NAMES, with_effort=True)
         self._correction_template = correction_template()
+        self._marker_reader = MarkerReader()
         self._parameters = PolledService(
             node, GetParameters, f"/{topics.TRAJECTORY_NODE}/get_parameters"
         )
@@ -292,20 +292,9 @@ class GraphSource:
         """Read the last markers, if they are the robot's."""
         if self._marker_message is None:
             return
-        try:
-            markers = deserialize_message(self._marker_message, MarkerArray).markers
-        except Exception:  # of a stranger; rclpy raises what the bytes make it raise
-            return
-        drawn: dict[str, Array] = {}
-        limit_m = None
-        for marker in markers:
-            if marker.ns == "zmp_limit":
-                limit_m = marker.scale.x / 2.0
-            if marker.action == Marker.ADD:
-                points = marker.points or [marker.pose.position]
-                drawn[marker.ns] = np.array([(p.x, p.y, p.z) for p in points])
-        if limit_m is not None and drawn.keys() >= _MARKERS:
-            self._drawn, self._limit_m = drawn, limit_m
+        drawn = self._marker_reader.read(self._marker_message)
+        if drawn.keys() >= _MARKERS:
+            self._drawn, self._limit_m = drawn, self._marker_reader.limit_m
 
     # -- the stage -------------------------------------------------------------------
 
