@@ -20,6 +20,7 @@ PARTS = (
     "recorder",
     "player",
     "ros2_verbs",
+    "view_cost",
     "lab_throughput",
 )
 

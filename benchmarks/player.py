@@ -41,7 +41,7 @@ def measure() -> list[Figure]:
     os.environ.update(node_environment(_DOMAIN, "LOCALHOST"))
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "walk"
-        _write_walk(bag)
+        write_walk(bag)
         played, lost, _ = _played(bag, 1.0, _DURATION_S)
         figures = [
             Figure(
@@ -73,7 +73,7 @@ def _speed(name: str, played: Any, lost: int, cpu_s: float) -> list[Figure]:
     ]
 
 
-def _write_walk(folder: Path) -> None:
+def write_walk(folder: Path) -> None:
     """Write the sample's walk with its thinned topics at 500 Hz.
 
     Each message of these is written four times, 2 ms apart.

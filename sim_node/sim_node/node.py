@@ -22,6 +22,7 @@ from biped_ros.sole_publisher import Publishers
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
+from msgs_json.learner_status import LearnerStatus
 from msgs_json.observation import Observation
 from msgs_json.segment import WaistSegment
 from msgs_json.walk_plan import WalkPlan
@@ -42,6 +43,9 @@ _WATCH_PERIOD_S = 0.1
 # After a stranger has left, until all have found each other again.
 _CALM_S = 0.5
 _PACE_REPORTS_S = 10.0
+# A push that a user asks for: on the torso's CoM, sideways.
+_PUSH_FORCE_N = 20.0
+_PUSH_TICKS = 50
 
 
 class SimNode(GuardedNode):
@@ -68,6 +72,11 @@ class SimNode(GuardedNode):
         self._loop: RealtimeLoop | None = None
         self._paused = False
         self._held: bytes | None = None
+        self._frozen: bool | None = None
+        self._frozen_walk: bool | None = None
+        """Whether the learner is frozen, and was when the present walk began."""
+        self._push_n, self._push_ticks = 0.0, 0
+        """Force to the left, and for how many more control ticks."""
         self._offered = False
         """The present walk was begun, and no other is to be begun before its end."""
         self._ownership = Publishers(self)
@@ -90,11 +99,13 @@ class SimNode(GuardedNode):
         self.listen(topics.PLAN, self._on_plan)
         self.listen(topics.WAIST_REFERENCE, self._on_segment)
         self.listen(topics.EPISODE, self._on_episode)
+        self.listen(topics.LEARNER_STATUS, self._on_learner_status)
         self.create_timer(_WATCH_PERIOD_S, self._watch_peers)
         if settings.pace == "realtime":
             self.create_timer(_WATCH_PERIOD_S, self._watch_pace)
         self.create_service(SetBool, f"{NAME}/pause", self._on_pause)
         self.create_service(Trigger, f"{NAME}/reset", self._on_reset)
+        self.create_service(SetBool, f"{NAME}/push", self._on_push)
 
     def close(self) -> None:
         """End the world."""
@@ -154,6 +165,9 @@ class SimNode(GuardedNode):
         """Publish a control tick, in the thread that walks."""
         self._punctuality.ticks += 1
         self._ticks.publish(tick)
+        if self._pilot is not None and self._push_ticks > 0:
+            self._push_ticks -= 1
+            self._pilot.biped.world.push((0.0, self._push_n, 0.0))
         if self._pilot is not None and self._pilot.segment is not None:
             self._markers.publish(tick, self._pilot.segment, self._pilot.biped.world)
 
@@ -192,6 +206,12 @@ class SimNode(GuardedNode):
         self._pilot.check_result(result)
         self._begin()
 
+    def _on_learner_status(self, message: bytes) -> None:
+        frozen = decode(LearnerStatus, string_text(message)).frozen
+        if self._frozen is None:  # heard for the first time, and so since it is there
+            self._frozen_walk = frozen
+        self._frozen = frozen
+
     def _begin(self) -> None:
         """Begin the next walk, unless somebody would not follow it from its start."""
         calm_s = time.monotonic() - self._disturbed_at
@@ -199,6 +219,7 @@ class SimNode(GuardedNode):
             self._offered = False  # until `_watch_peers` finds all in order
             return
         self._offered = True
+        self._frozen_walk, self._push_ticks = self._frozen, 0
         self._heard = time.monotonic()
         if self._loop is not None:
             self._loop.request(self._loop.begin)
@@ -323,6 +344,27 @@ class SimNode(GuardedNode):
         response.success = self._end(EndCause.RESET)
         self._held = None  # it was for the walk that has ended
         response.message = "walk ended" if response.success else "no walk to end"
+        return response
+
+    def _on_push(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        """Push the robot: true to its left, false to its right.
+
+        Only where nothing is learned: a walk that was pushed by hand would teach what
+        nobody can repeat.
+        """
+        if self._pilot is None or not self._pilot.walking:
+            response.message = "no walk to push"
+        elif not (self._frozen and self._frozen_walk):
+            response.message = (
+                "this walk is learned from; freeze the learner, and push the next one"
+            )
+        else:
+            self._push_n = _PUSH_FORCE_N if request.data else -_PUSH_FORCE_N
+            self._push_ticks = _PUSH_TICKS
+            response.success = True
+            response.message = f"pushed to the {'left' if request.data else 'right'}"
         return response
 
 

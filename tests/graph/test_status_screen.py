@@ -38,7 +38,7 @@ def shown(supervisor, *statuses, encoding="utf-8"):
     with StatusScreen(console, True, DOMAIN) as screen:
         for status in statuses or (None,):
             supervisor.graph.status = status
-            screen.update(supervisor)
+            screen.update(supervisor, None)
     file.flush()
     frames = raw.getvalue().decode(encoding)
     return re.sub(r"\x1b\[[?0-9;]*[hlAKm]", "", frames).replace("\r", "")

@@ -25,7 +25,7 @@ NODES = ("trajectory_node", "learner_node", "sim_node")
 
 def command(domain, out, *options, record="none"):
     """Return the words of a `biped up`, perhaps on no domain of its own."""
-    fixed = ["--record", record, "--out", out]
+    fixed = ["--record", record, "--out", out, "--no-view"]
     if domain is not None:
         fixed += ["--domain", domain]
     words = [sys.executable, "-m", "biped_bringup.cli.main", "up", *fixed, *options]

@@ -12,10 +12,14 @@ setup(
     ],
     package_data={NAME: ["report/*.j2"]},
     entry_points={
-        "biped.verbs": ["report = biped_view.verbs.report:add_parser"],
+        "biped.verbs": [
+            "report = biped_view.verbs.report:add_parser",
+            "view = biped_view.verbs.view:add_parser",
+        ],
         "console_scripts": [
             "foxglove_bridge = biped_view.foxglove.bridge:main",
             "tf_node = biped_view.tf_node:main",
+            "view = biped_view.live.node:main",
         ],
     },
 )

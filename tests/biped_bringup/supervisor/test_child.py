@@ -16,7 +16,7 @@ import os, sys
 from pathlib import Path
 from biped_bringup.supervisor.child import Child
 folder = Path(sys.argv[1])
-child = Child("node", "platform", folder / "p.yaml", os.environ, folder / "log",
+child = Child("node", "platform", (), os.environ, folder / "log",
               lambda name, line: None)
 child.start()
 assert child.wait(30.0)
@@ -51,7 +51,7 @@ def test_on_a_full_disk_all_that_a_child_prints_is_shown(tmp_path, monkeypatch) 
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     shown: list[str] = []
     child = Child(
-        "node", "talker", tmp_path / "p.yaml", os.environ, Path("/dev/full"),
+        "node", "talker", (), os.environ, Path("/dev/full"),
         lambda _, line: shown.append(line),
     )  # fmt: skip
     child.start()

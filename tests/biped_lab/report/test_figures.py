@@ -15,6 +15,7 @@ from tests.biped_lab.report.made_results import (
     runs_of,
 )
 
+from biped_common.colours import BLUE, PAPER, VERMILLION
 from biped_lab.report.bars import normalised_and_absolute, one_quantity
 from biped_lab.report.curves import fixed_share, learning_curves, share_at_goal
 from biped_lab.report.finished import (
@@ -24,7 +25,7 @@ from biped_lab.report.finished import (
     FinishedRuns,
     finished_runs,
 )
-from biped_lab.report.theme import BLUE, PAPER, VERMILLION, svg, theme
+from biped_lab.report.theme import svg, theme
 from biped_lab.report.walks import draw_end_causes, draw_replay
 
 

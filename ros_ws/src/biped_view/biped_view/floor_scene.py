@@ -1,6 +1,7 @@
 """What is drawn around the robot: floor, soles, support, ZMP and limit, waist paths.
 
-All on the floor lies a little above it, one above the other, so that nothing flickers.
+What lies on the floor lies a little above it, one above the other, so that nothing
+flickers. ZMP, limit and outlines are drawn above the soles, which would hide them.
 """
 
 from __future__ import annotations
@@ -17,13 +18,14 @@ from biped_view.theme import Theme
 
 Array = NDArray[np.float64]
 
-# Heights above the floor [m].
-_SUPPORT_Z, _SOLE_Z, _LIMIT_Z, _REFERENCE_Z, _ZMP_Z = 0.001, 0.002, 0.003, 0.004, 0.006
+# Heights above the floor, or, of what would be hidden, above the soles on it [m].
+_SUPPORT_Z, _OUTLINE_Z, _LIMIT_Z = 0.001, 0.002, 0.003
+_REFERENCE_Z, _ZMP_Z = 0.004, 0.006
 _LINE_M: Final = 0.004
 _DOT_M: Final = 0.012
 _CIRCLE_POINTS: Final = 65
-_LIMIT_OPACITY: Final = 0.18
-_SUPPORT_OPACITY: Final = 0.30
+_LIMIT_OPACITY: Final = 0.25
+_SUPPORT_OPACITY: Final = 0.55
 
 
 class FloorScene:
@@ -32,7 +34,7 @@ class FloorScene:
     def __init__(
         self,
         scene: viser.SceneApi,
-        robot: RobotSettings,
+        sole_thickness_m: float,
         zmp_limit_m: float,
         theme: Theme,
         name: str = "/walk",
@@ -41,14 +43,25 @@ class FloorScene:
 
         Args:
             scene: of a viser server.
-            robot: dimensions of its soles.
+            sole_thickness_m: of the robot's feet; what they would hide is drawn above.
             zmp_limit_m: norm of the ZMP error at which the walk fails.
             theme: of all colours.
             name: of the part of the scene's tree that this fills.
         """
-        self._scene, self._robot, self._name = scene, robot, name
+        self._scene, self._name, self._lift_m = scene, name, sole_thickness_m
         self._zmp_limit_m, self._theme = zmp_limit_m, theme
-        self._soles: Array | None = None
+        self._paths: dict[str, viser.LineSegmentsHandle] = {}
+        self._corners: Array | None = None
+        self.paint(theme)
+
+    def paint(self, theme: Theme) -> None:
+        """Draw in the colours of a theme, anew if need be."""
+        self._theme = theme
+        scene, name = self._scene, self._name
+        for path in self._paths.values():
+            path.remove()
+        self._paths.clear()
+        self._corners = None
         scene.add_grid(
             "/floor",
             infinite_grid=True,
@@ -97,26 +110,26 @@ class FloorScene:
             measured_m: (2,)
             reference_m: (2,)
         """
-        self._zmp.position = np.array([*np.asarray(measured_m), _ZMP_Z])
-        self._reference.position = np.array([*np.asarray(reference_m), 0.0])
+        self._zmp.position = np.array([*np.asarray(measured_m), self._lift_m + _ZMP_Z])
+        self._reference.position = np.array([*np.asarray(reference_m), self._lift_m])
         if not self._zmp.visible:
             self._zmp.visible = self._reference.visible = True
 
-    def place_support(self, feet_m: ArrayLike) -> None:
-        """Draw the soles that carry load, and the support polygon around them.
+    def place_support(self, corners_m: ArrayLike) -> None:
+        """Draw the support polygon.
 
         Args:
-            feet_m: (n, 2) or (n, 3) points of none, one or both soles under the ankle.
+            corners_m: (n, 2) points; their convex hull is drawn, nothing of none.
         """
-        feet = np.asarray(feet_m, dtype=np.float64).reshape(-1, np.shape(feet_m)[-1])
-        soles = feet[:, None, :2] + _sole(self._robot)
-        if self._soles is not None and np.array_equal(soles, self._soles):
+        corners = np.asarray(corners_m, dtype=np.float64).reshape(-1, 2)
+        if self._corners is not None and np.array_equal(corners, self._corners):
             return
-        self._soles, name = soles, f"{self._name}/support"
-        if not len(soles):
-            self._scene.remove_by_name(name)
+        name, first = f"{self._name}/support", self._corners is None
+        self._corners = corners
+        if not len(corners):
+            if not first:
+                self._scene.remove_by_name(name)
             return
-        corners = soles.reshape(-1, 2)
         hull = corners[ConvexHull(corners).vertices]
         fan = np.array([(0, k, k + 1) for k in range(1, len(hull) - 1)])
         self._scene.add_mesh_simple(
@@ -128,39 +141,54 @@ class FloorScene:
             side="double",
             cast_shadow=False,
         )
-        outlines = np.concatenate([_segments(_closed(sole)) for sole in soles])
-        self._scene.add_line_segments(
-            f"{name}/soles",
-            np.concatenate((outlines, np.full((*outlines.shape[:2], 1), _SOLE_Z)), 2),
-            self._theme.support,
-            thickness=_LINE_M,
-        )
+        outline = _at(_closed(hull), self._lift_m + _OUTLINE_Z)
+        self._line(f"{name}/outline", outline, self._theme.support)
 
     def draw_path(self, which: str, points_m: ArrayLike) -> None:
-        """Draw a path of the waist.
+        """Draw a path, in the colour of what it is.
 
         Args:
-            which: a field of the theme: "static_waist" or "waist".
+            which: a field of the theme: "static_waist", "waist", "waist_ahead", or,
+                for the ways of the feet, "left" or "right".
             points_m: (n, 3) on the way; with fewer than two nothing is drawn.
         """
         points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
-        if len(points) > 1:
-            self._line(f"{self._name}/{which}", points, getattr(self._theme, which))
+        path = self._paths.get(which)
+        if len(points) < 2:
+            if path is not None:
+                path.visible = False
+            return
+        if path is None:
+            colour = getattr(self._theme, which)
+            self._paths[which] = self._line(f"{self._name}/{which}", points, colour)
+            return
+        path.points = _segments(points).astype(np.float32)
+        path.visible = True
 
-    def _line(self, name: str, points: Array, colour: tuple[int, int, int]) -> None:
-        self._scene.add_line_segments(
+    def _line(
+        self, name: str, points: Array, colour: tuple[int, int, int]
+    ) -> viser.LineSegmentsHandle:
+        return self._scene.add_line_segments(
             name, _segments(points), colour, thickness=_LINE_M
         )
 
 
-def _sole(robot: RobotSettings) -> Array:
-    """Return the corners (4, 2) of a sole, from the point under its ankle [m]."""
+def sole_corners(robot: RobotSettings, feet_m: ArrayLike) -> Array:
+    """Return the corners (4 n, 2) of soles that point ahead [m].
+
+    Args:
+        robot: dimensions of its soles.
+        feet_m: (n, 2) or (n, 3) points of the soles under the ankle.
+    """
+    feet = np.asarray(feet_m, dtype=np.float64).reshape(-1, np.shape(feet_m)[-1])
     half_x, half_y = robot.sole_length_m / 2, robot.sole_width_m / 2
     ahead = robot.sole_ahead_of_ankle_m
-    return np.array(
+    sole = np.array(
         [(ahead + x * half_x, y * half_y)
          for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     )  # fmt: skip
+    corners: Array = feet[:, None, :2] + sole
+    return corners.reshape(-1, 2)
 
 
 def _closed(corners: Array) -> Array:

@@ -12,27 +12,37 @@ import numpy as np
 import viser
 from numpy.typing import ArrayLike, NDArray
 
+from biped_common.errors import BipedError
 from biped_description.joints import JOINT_NAMES
 from biped_description.links import TORSO
-from biped_description.robot import Robot
 
 Array = NDArray[np.float64]
+
+
+class BadUrdfError(BipedError, ValueError):
+    """The text is no URDF of a robot with the joints that are known here."""
 
 
 class RobotScene:
     """A robot that can be moved, under one name of the scene's tree."""
 
-    def __init__(
-        self, scene: viser.SceneApi, robot: Robot, name: str = "/robot"
-    ) -> None:
-        """Add the robot with straight legs, its waist at the world's origin.
+    def __init__(self, scene: viser.SceneApi, urdf: str, name: str = "/robot") -> None:
+        """Add the robot to the scene, joints at zero, torso at the origin.
 
         Args:
             scene: of a viser server.
-            robot: whose URDF is shown.
+            urdf: of a robot such as `Robot.urdf` describes.
             name: of the torso's frame in the scene's tree.
+
+        Raises:
+            BadUrdfError: it is no URDF of a robot with our joints.
         """
-        urdf = ET.fromstring(robot.urdf)
+        try:
+            self._add(scene, ET.fromstring(urdf), name)
+        except (ET.ParseError, AssertionError, LookupError, ValueError) as error:
+            raise BadUrdfError(f"URDF of another robot, or none: {error}") from None
+
+    def _add(self, scene: viser.SceneApi, urdf: ET.Element, name: str) -> None:
         colours = {
             material.attrib["name"]: _numbers(material.find("color"), "rgba")
             for material in urdf.iterfind("material")
@@ -54,6 +64,7 @@ class RobotScene:
             _add_shapes(scene, paths[child], links[child], colours)
         self._frames = [joints[each][0] for each in JOINT_NAMES]
         self._axes = np.array([joints[each][1] for each in JOINT_NAMES])
+        self._angles_rad = np.zeros(len(JOINT_NAMES))
 
     def move(
         self,
@@ -70,10 +81,12 @@ class RobotScene:
         """
         self._torso.position = np.asarray(torso_position_m, dtype=np.float64)
         self._torso.wxyz = np.asarray(torso_quaternion_wxyz, dtype=np.float64)
-        half = np.asarray(joint_position_rad, dtype=np.float64)[:, None] / 2
+        angles = np.array(joint_position_rad, dtype=np.float64)
+        half = angles[:, None] / 2
         turns = np.hstack((np.cos(half), np.sin(half) * self._axes))
-        for frame, turn in zip(self._frames, turns, strict=True):
-            frame.wxyz = turn
+        for joint in np.flatnonzero(angles != self._angles_rad):
+            self._frames[joint].wxyz = turns[joint]
+        self._angles_rad = angles
 
 
 def _add_shapes(

@@ -21,6 +21,13 @@ def is_bag(path: Path) -> bool:
     return path.suffix == _BAG_SUFFIX or (path.is_dir() and holds_bag(path))
 
 
+def memory_of(path: Path) -> Path | None:
+    """Return the memory from which `read_walk` has a walk; None if it is recorded."""
+    if is_bag(path):
+        return None
+    return path / MEMORY_FILE if path.is_dir() else path
+
+
 def read_walk(path: Path, walk: int | None = None) -> LoadedWalk:
     """Return a walk, and what its source tells of it.
 

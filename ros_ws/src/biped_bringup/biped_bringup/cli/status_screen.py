@@ -53,18 +53,18 @@ class StatusScreen(LiveDisplay):
             printable(f"[{who}] {text}"), markup=False, highlight=False, soft_wrap=True
         )
 
-    def update(self, supervisor: Supervisor) -> None:
-        """Show the state of the run."""
+    def update(self, supervisor: Supervisor, page: str | None) -> None:
+        """Show the state of the run, and the address of its live page."""
         status = supervisor.graph.status
         if status is not None and status.episodes != self._episodes:
             self._episodes = status.episodes
             self._survival.append(status.survival)
-        if self.redraw(lambda: self._screen(supervisor)):
+        if self.redraw(lambda: self._screen(supervisor, page)):
             return
         if status is not None and self.due():
             self.line("learner", f"{_progress(status)}  {figures_text(status.figures)}")
 
-    def _screen(self, supervisor: Supervisor) -> Group:
+    def _screen(self, supervisor: Supervisor, page: str | None) -> Group:
         graph = supervisor.graph
         table = Table("node", "process", "starts", "says")
         for child in supervisor.children.values():
@@ -94,6 +94,8 @@ class StatusScreen(LiveDisplay):
                 f"{seconds(graph.result.control_ticks):.2f} s, peak ZMP error "
                 f"{1000 * graph.result.peak_zmp_error_m:.1f} mm"
             )
+        if page is not None:
+            lines.append(f"live page  {page}")
         lines.append(f"terminals  export ROS_DOMAIN_ID={self._domain}")
         return Group(table, Text(printable("\n".join(lines), layout=True)))
 

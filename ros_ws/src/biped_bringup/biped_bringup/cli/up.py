@@ -30,6 +30,7 @@ from biped_bringup.cli.up_report import EndedRun, report
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, TF_NODE, GraphWatch
+from biped_bringup.supervisor.live_page import LivePage
 from biped_bringup.supervisor.supervisor import (
     RECORDER,
     START_ORDER,
@@ -82,12 +83,12 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser: argparse.ArgumentParser = verbs.add_parser(
         "up",
         help="learn, or walk, on the ROS 2 graph: three nodes, supervised",
-        description="Start a recorder of every topic, trajectory_node, learner_node "
-        "and sim_node as processes, watch them, restart them, and end them all, the "
-        "recorder last. A recorder that cannot go on (disk full, folder unusable) does "
-        "not stop the walk. Ends when the walk is learned, or "
-        "after --episodes. Exit status 0 when learned (or walked, with --greedy), 1 "
-        "when not, or when something could not be saved, 2 for wrong input, 3 when a "
+        description="Start a live page, a recorder of every topic, trajectory_node, "
+        "learner_node and sim_node as processes, watch them, restart them, and end "
+        "them all, the recorder last. A page or a recorder that cannot go on (disk "
+        "full, folder unusable) does not stop the walk. Ends when the walk is learned, "
+        "or after --episodes. Exit status 0 when learned (or walked, with --greedy), "
+        "1 when not, or when something could not be saved, 2 for wrong input, 3 when a "
         "node could not be kept running, 130 when interrupted.",
     )
     parser.add_argument(
@@ -152,7 +153,12 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         help="control ticks (2 ms) between messages of the fast topics (default 1)",
     )
     parser.add_argument(
-        "--no-view", action="store_true", help="plain lines instead of a live screen"
+        "--no-view",
+        action="store_true",
+        help="no live page (http://127.0.0.1:8080, or the next free port)",
+    )
+    parser.add_argument(
+        "--plain", action="store_true", help="plain lines instead of a live screen"
     )
     parser.add_argument(
         "--foxglove",
@@ -274,9 +280,13 @@ def _supervise(
     """
     environment = node_environment(domain, options.discovery)
     os.environ.update(environment)  # the supervisor's own node, too
-    screen = StatusScreen(Console(stderr=True), not options.no_view, domain)
+    screen = StatusScreen(Console(stderr=True), not options.plain, domain)
+    page = None
     failure = None
     with stop_requests() as stops, screen:
+        if not options.no_view:
+            page = LivePage(environment, folder, folder / MEMORY_FILE, screen.line)
+            page.start()
         screen.line(NAME, f"for other terminals: export ROS_DOMAIN_ID={domain}")
         if changes:
             screen.line(NAME, f"other settings: {changes}")
@@ -284,7 +294,9 @@ def _supervise(
         graph = supervisor.graph
 
         def stopped() -> bool:
-            screen.update(supervisor)
+            screen.update(supervisor, None if page is None else page.address)
+            if page is not None:
+                page.look_after()
             return bool(stops)
 
         def done() -> bool:
@@ -301,7 +313,9 @@ def _supervise(
             failure = str(error)
         finally:
             supervisor.stop()
-        screen.update(supervisor)
+            if page is not None:
+                page.stop()
+        screen.update(supervisor, None)
     return supervisor, bool(stops), failure
 
 

@@ -13,7 +13,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -29,7 +29,7 @@ class Child:
         self,
         name: str,
         module: str,
-        parameter_file: Path,
+        arguments: Sequence[str],
         environment: Mapping[str, str],
         log_file: Path,
         show: Callable[[str, str], None],
@@ -39,7 +39,7 @@ class Child:
         Args:
             name: of the node.
             module: that runs it.
-            parameter_file: YAML of its ROS parameters.
+            arguments: of the module.
             environment: of the process.
             log_file: takes everything that the process prints.
             show: told (name, line) of everything that the process prints.
@@ -50,10 +50,7 @@ class Child:
         """What it printed last."""
         self.log_failure: str | None = None
         """Why the log ends before the process does."""
-        self._command = [
-            sys.executable, "-m", module,
-            "--ros-args", "--params-file", str(parameter_file),
-        ]  # fmt: skip
+        self._command = [sys.executable, "-m", module, *arguments]
         self._environment = dict(environment)
         self._log_file = log_file
         self._show = show

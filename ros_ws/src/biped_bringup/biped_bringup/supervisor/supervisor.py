@@ -108,8 +108,9 @@ class Supervisor:
                 content = {name: {"ros__parameters": dict(parameters[name])}}
                 file.write_text(yaml.safe_dump(content))
                 log = folder / f"{name}.log"
+                arguments = ("--ros-args", "--params-file", str(file))
                 self.children[name] = Child(
-                    name, _module(name), file, environment, log, show
+                    name, _module(name), arguments, environment, log, show
                 )
                 self._budgets[name] = RestartBudget()
         self.graph = GraphWatch(int(environment["ROS_DOMAIN_ID"]))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from biped_lab.report.theme import BLUE, CYCLE, INK, VERMILLION
+from biped_common.colours import BLUE, CYCLE, INK, VERMILLION
 from biped_lab.results import PlannedArm, PlannedStudy
 from biped_lab.study import Value
 

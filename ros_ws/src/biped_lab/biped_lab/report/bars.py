@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from biped_common.colours import GREY, ORANGE, SKY
 from biped_lab.report.estimates import ratio_of_means, restricted_mean
 from biped_lab.report.finished import EPISODES, FIXED_SHARE, SIMULATED, FinishedRuns
 from biped_lab.report.marks import (
@@ -20,7 +21,7 @@ from biped_lab.report.marks import (
     median_mark,
     reached,
 )
-from biped_lab.report.theme import GREY, ORANGE, SKY, new_figure
+from biped_lab.report.theme import new_figure
 from biped_lab.statistics.censored import Estimate
 
 LABELS = {

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from biped_common.colours import GREY
 from biped_common.timing import seconds
 from biped_lab.report.finished import EPISODES, FinishedRuns
 from biped_lab.report.marks import arm_panels, reached
-from biped_lab.report.theme import GREY
 from biped_lab.statistics.censored import CensoredTimes, reached_curve
 
 RUNNING_MEAN_EPISODES = 10

@@ -19,18 +19,11 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from biped_bringup.run_settings import RunSettings
+from biped_common.colours import BLUE, GREEN, GREY, PAPER, SKY, VERMILLION
 from biped_common.settings import from_mapping
 from biped_lab.report.finished import EPISODES, FinishedRuns
 from biped_lab.report.marks import wrapped
-from biped_lab.report.theme import (
-    BLUE,
-    GREEN,
-    GREY,
-    PAPER,
-    SKY,
-    VERMILLION,
-    new_figure,
-)
+from biped_lab.report.theme import new_figure
 from learner_node.checkpoint import CheckpointError, read_checkpoint, taking_over
 from learner_node.walking.task import COMPONENTS, INPUT_NAMES, N_DISCRETE, WalkTask
 from learner_node.xol.selection import choose_greedy

@@ -15,9 +15,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from biped_common.colours import GREY, INK, PAPER
 from biped_lab.report.arrangement import NO_FIXED_MODE
 from biped_lab.report.finished import FinishedRuns
-from biped_lab.report.theme import GREY, INK, PAPER, new_figure
+from biped_lab.report.theme import new_figure
 from biped_lab.statistics.censored import Estimate
 
 _BESIDE = 0.55

@@ -1,7 +1,6 @@
-"""One look for all figures: sizes, the colours of Okabe and Ito, and exact bytes.
+"""One look for all figures: sizes, lines, and exact bytes.
 
-Colours: M. Okabe and K. Ito, "Color Universal Design", 2008; told apart by people with
-any common colour blindness. Figures are as wide as a page; nothing here is pyplot's.
+Figures are as wide as a page; nothing here is pyplot's.
 """
 
 from __future__ import annotations
@@ -16,11 +15,8 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-INK, PAPER, GREY = "#1b1d21", "#fefefe", "#8c9096"
-BLUE, VERMILLION, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
-ORANGE, SKY, YELLOW = "#e69f00", "#56b4e9", "#f0e442"
-CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, YELLOW)
-"""Black, the eighth, is the ink: it is kept for what others are compared with."""
+from biped_common.colours import BLUE, INK, PAPER
+
 _OF_THE_PAGE = {INK: "currentColor", PAPER: "var(--paper)", BLUE: "var(--blue)"}
 """Colours that a page may change: in the dark, ours would not be seen."""
 WIDTH_IN = 7.2

@@ -7,18 +7,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from biped_common.colours import BLUE, GREEN, GREY, INK, PURPLE, SKY, VERMILLION, YELLOW
 from biped_lab.report.finished import FinishedRuns
-from biped_lab.report.theme import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    PURPLE,
-    SKY,
-    VERMILLION,
-    YELLOW,
-    new_figure,
-)
+from biped_lab.report.theme import new_figure
 
 _CAUSE_COLOURS = {
     "completed": GREEN,

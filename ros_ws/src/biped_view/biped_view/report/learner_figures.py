@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from biped_common.colours import BLUE, GREEN, GREY, SKY, VERMILLION
 from biped_common.timing import CONTROL_PERIOD_S
-from biped_lab.report.theme import BLUE, GREEN, GREY, SKY, VERMILLION, new_figure
+from biped_lab.report.theme import new_figure
 from learner_node.walking.episode_log import EpisodeLog
 from learner_node.walking.session import LearningSession
 from learner_node.walking.task import INPUT_NAMES, N_DISCRETE

@@ -16,7 +16,7 @@ import viser
 
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.robot import Robot
-from biped_view.floor_scene import FloorScene
+from biped_view.floor_scene import FloorScene, sole_corners
 from biped_view.report.phases import shown_rows, standing_feet
 from biped_view.robot_scene import RobotScene
 from biped_view.theme import DARK, LIGHT, Theme
@@ -74,19 +74,18 @@ def _page(record: WalkRecord, frames: list[int], theme: Theme) -> str:
 def _recorded(
     server: viser.ViserServer, record: WalkRecord, frames: list[int], theme: Theme
 ) -> str:
-    robot = Robot(record.robot)
     scene = server.scene
     scene.set_up_direction("+z")
     middle = float(np.mean(record.torso_position_m[frames, 0]))
     server.initial_camera.position = (middle + _EYE_M[0], _EYE_M[1], _EYE_M[2])
     server.initial_camera.look_at = (middle, 0.0, _HEIGHT_M)
-    floor = FloorScene(scene, record.robot, record.zmp_limit_m, theme)
+    floor = FloorScene(scene, record.robot.sole_thickness_m, record.zmp_limit_m, theme)
     for which, points in (
         ("static_waist", record.static_waist_m),
         ("waist", record.waist_m),
     ):
         floor.draw_path(which, points[frames][np.isfinite(points[frames]).all(axis=1)])
-    shown = RobotScene(scene, robot)
+    shown = RobotScene(scene, Robot(record.robot).urdf)
     serializer = server.get_scene_serializer()
     before = frames[0]
     for row in frames:
@@ -99,5 +98,6 @@ def _recorded(
                 record.joint_position_rad[row],
             )
             floor.place_zmp(record.zmp_m[row], record.zmp_reference_m[row])
-            floor.place_support(np.array(standing_feet(record, row)).reshape(-1, 2))
+            feet = np.array(standing_feet(record, row)).reshape(-1, 2)
+            floor.place_support(sole_corners(record.robot, feet))
     return serializer.as_html(dark_mode=theme.dark)

@@ -9,18 +9,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Polygon
 from numpy.typing import NDArray
 
+from biped_common.colours import BLUE, GREEN, GREY, PURPLE, SKY, VERMILLION
 from biped_common.timing import CONTROL_PERIOD_S, seconds
 from biped_description.joints import JOINTS_PER_LEG, LEG_JOINTS
 from biped_description.robot import Robot
-from biped_lab.report.theme import (
-    BLUE,
-    GREEN,
-    GREY,
-    PURPLE,
-    SKY,
-    VERMILLION,
-    new_figure,
-)
+from biped_lab.report.theme import new_figure
 from biped_view.report.phases import phases, short_name, standing_feet
 from biped_view.walk_record import Rows, WalkRecord
 from msgs_json.episode_result import CostTerms

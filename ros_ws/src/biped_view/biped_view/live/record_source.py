@@ -1,0 +1,120 @@
+"""A recorded walk as a source of the page: it is played, or scrubbed by a slider."""
+
+from __future__ import annotations
+
+import time
+from typing import Final
+
+import numpy as np
+
+from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, seconds
+from biped_description.robot import Robot
+from biped_view.floor_scene import sole_corners
+from biped_view.live.moment import Array, Course, Moment, Traces
+from biped_view.live.page import Page
+from biped_view.walk_record import WalkRecord
+
+_SPEEDS: Final = {"¼": 0.25, "1": 1.0, "2": 2.0}
+_AHEAD_TICKS: Final = 60
+_WAY_STRIDE_TICKS: Final = 20
+_REST_S: Final = 1.0
+"""A walk stays at its end for so long before it begins again."""
+_PERIOD_S: Final = CONTROL_PERIOD_US / 1e6
+
+
+class RecordSource:
+    """Plays a recorded walk again and again, until a user moves the slider."""
+
+    def __init__(self, page: Page, record: WalkRecord) -> None:
+        """Put the robot on the page, at the walk's beginning, and walk.
+
+        Args:
+            page: to fill.
+            record: of at least one control tick.
+        """
+        self._page, self._record = page, record
+        self._last_s = seconds(record.ticks - 1)
+        self._time_s, self._speed, self._playing = 0.0, 1.0, True
+        self._turned_at = time.monotonic()
+        self._ended_at: float | None = None
+        page.set_stage(
+            Robot(record.robot), record.zmp_limit_m, seconds(record.walk_ticks)
+        )
+        page.set_course(
+            Course(record.static_waist_m, record.left_foot_m, record.right_foot_m)
+        )
+        self._errors = np.linalg.norm(record.zmp_error_m, axis=1)
+        self._set_slider = page.add_time_slider(self._last_s, 0.02, self._moved)
+        page.add_buttons("Walk", ("Play", "Stop"), self._pressed)
+        page.add_buttons("Speed", tuple(_SPEEDS), self._paced)
+        self._show(0.0)
+
+    def turn(self) -> None:
+        """Play on."""
+        now = time.monotonic()
+        passed_s, self._turned_at = now - self._turned_at, now
+        if not self._playing:
+            return
+        if self._ended_at is not None:
+            if now - self._ended_at < _REST_S:
+                return
+            self._ended_at, self._time_s = None, 0.0
+        else:
+            self._time_s = min(self._last_s, self._time_s + self._speed * passed_s)
+            if self._time_s == self._last_s:
+                self._ended_at = now
+        self._set_slider(round(self._time_s, 2))
+        self._show(self._time_s)
+
+    def _moved(self, time_s: float) -> None:
+        self._playing, self._ended_at, self._time_s = False, None, time_s
+        self._show(time_s)
+
+    def _pressed(self, button: str) -> None:
+        self._playing = button == "Play"
+        self._show(self._time_s)
+
+    def _paced(self, button: str) -> None:
+        self._speed = _SPEEDS[button]
+
+    def _show(self, time_s: float) -> None:
+        record, page = self._record, self._page
+        tick = min(record.ticks - 1, round(time_s / _PERIOD_S))
+        page.show_moment(lambda: self._moment(tick))
+        page.show_traces(lambda: self._traces(tick))
+        phase = "double support" if record.double_support[tick] else "single support"
+        side = "right" if record.right_support[tick] else "left"
+        detail = f"{time_s:.2f} s, {phase}, {side}"
+        if tick == record.ticks - 1 and record.end_cause is not None:
+            cause = str(record.end_cause).replace("_", " ")
+            detail = f"ended: {cause} at {time_s:.2f} s"
+        page.show_state("Playing" if self._playing else "Stopped", detail, good=True)
+
+    def _moment(self, tick: int) -> Moment:
+        record = self._record
+        feet = np.array([record.left_foot_m[tick], record.right_foot_m[tick]])
+        if not record.double_support[tick]:
+            feet = feet[[int(record.right_support[tick])]]
+        return Moment(
+            torso_position_m=record.torso_position_m[tick],
+            torso_quaternion=record.torso_quaternion[tick],
+            joint_position_rad=record.joint_position_rad[tick],
+            zmp_m=record.zmp_m[tick],
+            zmp_reference_m=record.zmp_reference_m[tick],
+            support_m=sole_corners(record.robot, feet),
+            waist_m=record.waist_m[: tick + 1 : _WAY_STRIDE_TICKS],
+            waist_ahead_m=record.waist_m[tick : tick + _AHEAD_TICKS],
+        )
+
+    def _traces(self, tick: int) -> Traces:
+        """Return what was measured up to a tick, a row per learning tick."""
+        ends = np.arange(TICKS_PER_LEARNING_TICK - 1, tick + 1, TICKS_PER_LEARNING_TICK)
+        if not len(ends):
+            return Traces(np.zeros(0), np.zeros(0), np.zeros((0, 2)))
+        errors: Array = self._errors[: ends[-1] + 1]
+        worst = errors.reshape(-1, TICKS_PER_LEARNING_TICK).max(axis=1)
+        if tick > ends[-1]:  # the piece of a learning tick in which it ended
+            ends = np.append(ends, tick)
+            worst = np.append(worst, self._errors[ends[-2] + 1 : tick + 1].max())
+        time_s = np.array([seconds(int(each) + 1) for each in ends])
+        return Traces(time_s, worst, self._record.correction_m[ends])
