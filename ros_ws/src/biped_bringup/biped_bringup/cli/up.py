@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,9 +84,9 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "and sim_node as processes, watch them, restart them, and end them all, the "
         "recorder last. A recorder that cannot go on (disk full, folder unusable) does "
         "not stop the walk. Ends when the walk is learned, or "
-        "after --episodes. Exit status 0 when learned (or walked, with --greedy), 1 "
-        "when not, or when something could not be saved, 2 for wrong input, 3 when a "
-        "node could not be kept running, 130 when interrupted.",
+        "after --episodes. Exit status 0 when learned (or walked, with --greedy or "
+        "--static), 1 when not, or when something could not be saved, 2 for wrong "
+        "input, 3 when a node could not be kept running, 130 when interrupted.",
     )
     parser.add_argument(
         "--pace",
@@ -94,11 +94,18 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         default="lockstep",
         help="as fast as all can (default), or 500 Hz in real time",
     )
-    parser.add_argument(
+    once = parser.add_mutually_exclusive_group()
+    once.add_argument(
         "--greedy",
         action="store_true",
         help=f"walk once, greedily, from the {MEMORY_FILE} in --out; learn nothing; "
         "--seed is that of the disturbances, if any",
+    )
+    once.add_argument(
+        "--static",
+        action="store_true",
+        help="walk once, without correction; learn nothing, and leave a "
+        f"{MEMORY_FILE} in --out as it is",
     )
     parser.add_argument(
         "--resume",
@@ -150,7 +157,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         help="control ticks (2 ms) between messages of the fast topics (default 1)",
     )
     parser.add_argument(
-        "--no-view", action="store_true", help="plain lines instead of a live screen"
+        "--no-view", action="store_true", help="plain lines instead of a live line"
     )
     add_real_time_options(parser)
     add_recording_options(parser)
@@ -161,6 +168,16 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Supervise and report."""
+    return supervise(options, report)
+
+
+def supervise(options: argparse.Namespace, told: Callable[[EndedRun], int]) -> int:
+    """Run the nodes to their end.
+
+    Args:
+        options: of the command.
+        told: of the run that has ended; returns the exit status.
+    """
     names = _nodes(options.nodes)
     out = options.out.resolve()
     memory_file = out / MEMORY_FILE
@@ -175,16 +192,18 @@ def run(options: argparse.Namespace) -> int:
     WaistReference(Robot(settings.robot), settings.gait, settings.correction)
     bag = bag_folder(options, names)
     domain = _domain(options.domain)
-    max_episodes = 1 if options.greedy else options.episodes or 0
+    one_walk = options.greedy or options.static
+    max_episodes = 1 if one_walk else options.episodes or 0
     try:
         parameters = node_parameters(
             settings,
             seed,
-            checkpoint_file=str(memory_file),
+            # Greedy out of an empty memory is no correction at all.
+            checkpoint_file="" if options.static else str(memory_file),
             max_episodes=max_episodes,
             publish_every_ticks=options.publish_every,
             pace=options.pace,
-            frozen=options.greedy,
+            frozen=one_walk,
             recorders=0 if bag is None else 1,
             **real_time_parameters(options),
         ).flat()
@@ -200,7 +219,7 @@ def run(options: argparse.Namespace) -> int:
             seed,
             preset=preset_of(options) if begun_with is None else "",
             pace=options.pace,
-            frozen=options.greedy,
+            frozen=one_walk,
             max_episodes=max_episodes,
             memory_file=begun_with,
         )
@@ -217,7 +236,7 @@ def run(options: argparse.Namespace) -> int:
         supervisor, interrupted, failure = _supervise(
             options, {name: parameters[name] for name in names}, domain, out, changes
         )
-        return report(
+        return told(
             EndedRun(
                 supervisor,
                 options,
@@ -252,7 +271,7 @@ def _supervise(
     """
     environment = node_environment(domain, options.discovery)
     os.environ.update(environment)  # the supervisor's own node, too
-    screen = StatusScreen(Console(stderr=True), not options.no_view, domain)
+    screen = StatusScreen(Console(stderr=True), not options.no_view)
     failure = None
     with stop_requests() as stops, screen:
         screen.line(NAME, f"for other terminals: export ROS_DOMAIN_ID={domain}")
@@ -266,7 +285,7 @@ def _supervise(
             return bool(stops)
 
         def done() -> bool:
-            if options.greedy:
+            if options.greedy or options.static:
                 return _walked(graph)
             status = graph.status
             return status is not None and (
@@ -319,6 +338,10 @@ def _nodes(text: str) -> list[str]:
 
 def _learned(options: argparse.Namespace, memory_file: Path) -> TrainingRun | None:
     """Return the run that is gone on with, under the options' settings, if any."""
+    if options.static:
+        if options.fresh or options.resume:
+            raise CommandError("--static: not with --fresh or --resume")
+        return None
     if options.greedy or options.resume:
         if options.fresh:
             raise CommandError("--fresh: cannot be given with --greedy or --resume")

@@ -45,6 +45,8 @@ _MODULES = {
     topics.SIM_NODE: "sim_node.node",
 }
 START_ORDER = tuple(_MODULES)
+READY = "is ready (process "
+"""In the line that tells of a node that has come up."""
 _TURN_S = 0.1
 _ENDING_TURN_S = 0.02
 
@@ -188,7 +190,7 @@ class Supervisor:
                 )
                 return
         self._budgets[child.name].ready()
-        self._show(NAME, f"{child.name} is ready (process {child.pid})")
+        self._show(NAME, f"{child.name} {READY}{child.pid})")
 
     def _look_after(self, child: Child, stopped: Callable[[], bool]) -> None:
         if child.name in self.done_without:
