@@ -74,7 +74,7 @@ $(BIN)/python:
 			2>/dev/null; then exec $$python -m venv .venv; fi; \
 	done; \
 	echo 'biped: no Python 3.11 found. PyBullet has no wheels for later ones; what' \
-		'else there is to do: README.md, "Other Pythons"' >&2; exit 1
+		'else there is to do: docs/install.md, "Other Pythons"' >&2; exit 1
 
 # Stamps: each is as new as what was last installed from its prerequisites.
 #
