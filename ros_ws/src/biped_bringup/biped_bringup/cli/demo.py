@@ -59,7 +59,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Show the three walks; say where everything lies."""
-    demo = _Demo(options.out)
+    demo = Demo(options.out)
     print("1 of 3  the walk as it was planned, in real time", flush=True)
     _, status = demo.walk("--static", "--record", "none")
     if status not in _WALKED:
@@ -72,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
     if status not in _WALKED:
         return status
     if not learned["completed"]:
-        demo.tell(f"not learned within {learned['episodes']} episodes")
+        demo.tell(f"not learned yet: {learned['episodes']} episodes")
         return status
     demo.tell(
         f"learned in {learned['episodes']} episodes, "
@@ -85,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
     return status
 
 
-class _Demo:
+class Demo:
     """Runs of `biped up` in one folder and on one domain."""
 
     def __init__(self, out: Path) -> None:
