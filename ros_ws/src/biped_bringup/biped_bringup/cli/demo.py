@@ -14,11 +14,7 @@ from typing import Any
 from biped_bringup.cli import main, up
 from biped_bringup.cli.learn import MEMORY_FILE
 from biped_bringup.cli.up_report import EndedRun, summarized
-from biped_common.command_line import (
-    DONE,
-    NOT_ACHIEVED,
-    positive,
-)
+from biped_common.command_line import DONE, NOT_ACHIEVED, positive
 from biped_common.terminal_text import printable
 from biped_ros.environment import private_domain
 from msgs_json.end_cause import EndCause
