@@ -7,14 +7,13 @@
 BIN := .venv/bin
 READY := .venv/.ready-to-run
 DEV := .venv/.ready-to-test
-OUT := bags/quick
 
 export VIRTUAL_ENV := $(CURDIR)/.venv
 export UV_NO_CONFIG := 1
 UV := .venv/installer/bin/uv
 
 .DEFAULT_GOAL := help
-.PHONY: help install dev run test lint format bench colcon lock version clean
+.PHONY: help install dev run test lint format bench docs colcon lock version clean
 
 help:  ## list these targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
@@ -23,12 +22,8 @@ install: $(READY)  ## create .venv with what `make run` needs, and the biped its
 
 dev: $(DEV)  ## add what `make test` needs: pytest, mypy, colcon, Pinocchio and others
 
-run: $(READY)  ## learn a walk on ROS 2, walk it in real time, draw its ZMP
-	$(BIN)/biped up --preset quick --fresh --publish-every 10 --out $(OUT)
-	$(BIN)/biped up --greedy --pace realtime --fifo 50 --out $(OUT) \
-		|| { echo "real time was not kept; the same walk in lockstep:"; \
-		$(BIN)/biped up --greedy --out $(OUT); }
-	$(BIN)/biped walk --memory $(OUT)/memory.npz --figure $(OUT)/zmp.png
+run: $(READY)  ## see the walk fail, be learned on ROS 2, and be walked in real time
+	@$(BIN)/biped demo
 
 test: $(DEV)  ## run the tests
 	$(BIN)/python -m pytest -n 2 --dist loadfile
@@ -45,6 +40,9 @@ format: $(DEV)  ## sort imports and lay out the code
 
 bench: $(DEV)  ## time the simulation and the learner
 	$(BIN)/python -m benchmarks
+
+docs: $(DEV)  ## build the documentation site into site/; any warning is an error
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 colcon: $(DEV)  ## build the ROS workspace into ros_ws/install
 	cd ros_ws && $(CURDIR)/$(BIN)/colcon build
@@ -66,7 +64,7 @@ version:  ## give the project and all its packages a version: make version TO=0.
 		CITATION.cff pyproject.toml ros_ws/src/*/setup.py ros_ws/src/*/package.xml
 
 clean:  ## remove .venv, caches and build products (recorded runs stay)
-	rm -rf .venv build dist install log ros_ws/build ros_ws/install ros_ws/log
+	rm -rf .venv build dist install log site ros_ws/build ros_ws/install ros_ws/log
 	rm -rf .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find . -type d \( -name __pycache__ -o -name '*.egg-info' \) -prune -exec rm -rf {} +
 
@@ -76,7 +74,7 @@ $(BIN)/python:
 			2>/dev/null; then exec $$python -m venv .venv; fi; \
 	done; \
 	echo 'biped: no Python 3.11 found. PyBullet has no wheels for later ones; what' \
-		'else there is to do: README.md, "Other Pythons"' >&2; exit 1
+		'else there is to do: docs/install.md, "Other Pythons"' >&2; exit 1
 
 # Stamps: each is as new as what was last installed from its prerequisites.
 #

@@ -171,7 +171,7 @@ def test_an_environment_of_another_python_is_not_begun(
     done = checkout.make("install", PATH=f"{tools}:{os.environ['PATH']}")
     assert done.returncode != 0
     assert "no Python 3.11 found" in done.stderr
-    assert "README.md" in done.stderr
+    assert "docs/install.md" in done.stderr
     assert not (checkout.folder / ".venv").exists()
 
 

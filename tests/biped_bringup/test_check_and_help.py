@@ -26,6 +26,9 @@ UNITS = {
         "--factor": "simulated seconds per second",
     },
     "check": {},
+    "demo": {"--episodes": "episodes"},
+    "report": {},
+    "view": {},
     "report": {},
 }
 

@@ -18,6 +18,7 @@ setup(
         ],
         "biped.verbs": [
             "check = biped_bringup.cli.check:add_parser",
+            "demo = biped_bringup.cli.demo:add_parser",
             "learn = biped_bringup.cli.learn:add_parser",
             "up = biped_bringup.cli.up:add_parser",
             "walk = biped_bringup.cli.walk:add_parser",

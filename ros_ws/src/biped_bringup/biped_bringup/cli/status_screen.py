@@ -1,120 +1,107 @@
-"""What `biped up` shows: one live screen on a terminal, plain lines elsewhere.
+"""What `biped up` shows: one calm line on a terminal, plain lines elsewhere.
 
-Texts come from nodes, and through them from anyone on the graph: nothing in them acts
-on the terminal.
+On a terminal the line tells how far the run is, and only what goes wrong is written
+above it; what else nodes say is in their logs. Texts come from nodes, and through them
+from anyone on the graph: nothing in them acts on the terminal.
 """
 
 from __future__ import annotations
 
 import time
-from collections import deque
-from collections.abc import Iterable
 from datetime import timedelta
 
-from rich.console import Console, Group
-from rich.table import Table
+from rich.console import Console
 from rich.text import Text
 
 from biped_bringup.cli.figures import figures_text
 from biped_bringup.cli.run_figures import missed_deadlines, simulated_per_real_time
 from biped_bringup.supervisor.child import Child
-from biped_bringup.supervisor.supervisor import Supervisor
+from biped_bringup.supervisor.graph_watch import NAME, GraphWatch
+from biped_bringup.supervisor.supervisor import READY, Supervisor
 from biped_common.live_display import LiveDisplay
 from biped_common.terminal_text import printable
-from biped_common.timing import seconds
 from msgs_json.learner_status import LearnerStatus
 
-# How often the learner's state is written where there is no screen to redraw [s].
+# How often the learner's state is written where there is no line to redraw [s].
 _PLAIN_INTERVAL_S = 5.0
-_REMEMBERED_EPISODES = 60
-_LEVELS, _ASCII_LEVELS = "▁▂▃▄▅▆▇█", ".:-=+*#@"
+_WELL = "running"
+"""What a node says in /diagnostics that has nothing to complain of."""
+_BAR, _ASCII_BAR = ("━", "─"), ("#", "-")
 
 
 class StatusScreen(LiveDisplay):
-    """Nodes, learner and the last walk, next to the nodes' own lines."""
+    """How far the run is, and the lines of its nodes."""
 
-    def __init__(self, console: Console, live: bool, domain: int) -> None:
+    def __init__(self, console: Console, live: bool) -> None:
         """Prepare; show nothing yet.
 
         Args:
             console: to write to.
-            live: redraw one screen, if the console is a terminal.
-            domain: of the run.
+            live: redraw one line, if the console is a terminal.
         """
         super().__init__(console, live, _PLAIN_INTERVAL_S)
-        self._domain = domain
+        self._calm = live and console.is_terminal
         self._since = time.monotonic()
-        self._episodes = -1
-        self._survival: deque[float] = deque(maxlen=_REMEMBERED_EPISODES)
 
     def line(self, who: str, text: str) -> None:
         """Show a line of a node or of the supervisor."""
+        # A warning is a remark, too, which stands below the line as long as it holds.
+        told = text.startswith(("[INFO]", "[WARN]")) or (who == NAME and READY in text)
+        if self._calm and told:
+            return
         self.console.print(
             printable(f"[{who}] {text}"), markup=False, highlight=False, soft_wrap=True
         )
 
-    def update(self, supervisor: Supervisor, page: str | None) -> None:
-        """Show the state of the run, and the address of its live page."""
-        status = supervisor.graph.status
-        if status is not None and status.episodes != self._episodes:
-            self._episodes = status.episodes
-            self._survival.append(status.survival)
-        if self.redraw(lambda: self._screen(supervisor, page)):
+    def update(self, supervisor: Supervisor) -> None:
+        """Show the state of the run."""
+        if self.redraw(lambda: self._text(supervisor)):
             return
+        status = supervisor.graph.status
         if status is not None and self.due():
             self.line("learner", f"{_progress(status)}  {figures_text(status.figures)}")
 
-    def _screen(self, supervisor: Supervisor, page: str | None) -> Group:
-        graph = supervisor.graph
-        table = Table("node", "process", "starts", "says")
-        for child in supervisor.children.values():
-            table.add_row(
-                child.name,
-                str(child.pid or "-"),
-                str(child.starts),
-                Text(printable(_says(child, supervisor))),
-            )
-        lines = ["learner    not heard yet"]
-        if graph.status is not None:
-            levels = _ASCII_LEVELS if self.console.options.ascii_only else _LEVELS
-            lines = [
-                f"learner    {_progress(graph.status)}",
-                f"survival   {sparkline(self._survival, levels)}",
-                f"memory     {figures_text(graph.status.figures)}; "
-                f"{graph.status.simulated_s:.1f} s walked",
-            ]
+    def _text(self, supervisor: Supervisor) -> Text:
+        graph, children = supervisor.graph, supervisor.children.values()
+        absent = [each.name for each in children if each.name not in graph.remarks]
+        state = f"starting {', '.join(absent)}" if absent else self._state(graph)
+        late = missed_deadlines(graph)
         elapsed = timedelta(seconds=int(time.monotonic() - self._since))
-        lines.append(
-            f"time       {elapsed} elapsed, {simulated_per_real_time(graph)} simulated "
-            f"s/s, {missed_deadlines(graph)} deadlines missed"
+        lines = [f"{state}  {elapsed}{f'  {late} deadlines missed' if late else ''}"]
+        lines += [
+            f"  {child.name}: {trouble}"
+            for child in children
+            if (trouble := _trouble(child, supervisor))
+        ]
+        # A line that wraps would leave its first half behind when it is redrawn.
+        return Text(
+            printable("\n".join(lines), layout=True), no_wrap=True, overflow="ellipsis"
         )
-        if graph.result is not None:
-            lines.append(
-                f"last walk  {graph.result.end_cause} after "
-                f"{seconds(graph.result.control_ticks):.2f} s, peak ZMP error "
-                f"{1000 * graph.result.peak_zmp_error_m:.1f} mm"
-            )
-        if page is not None:
-            lines.append(f"live page  {page}")
-        lines.append(f"terminals  export ROS_DOMAIN_ID={self._domain}")
-        return Group(table, Text(printable("\n".join(lines), layout=True)))
+
+    def _state(self, graph: GraphWatch) -> str:
+        status = graph.status
+        if status is None:
+            return "waiting for the learner"
+        if status.frozen:
+            speed = simulated_per_real_time(graph)
+            return f"walking, nothing is learned  {speed} simulated s/s"
+        full, empty = _ASCII_BAR if self.console.options.ascii_only else _BAR
+        passed = status.subtasks if status.schedule_complete else status.subtask
+        bar = full * passed + empty * max(status.subtasks - passed, 0)
+        return (
+            f"learning {bar} {status.target_time_s:.2f} s  episodes {status.episodes}  "
+            f"survival {100 * status.survival:.0f} %"
+        )
 
 
-def sparkline(shares: Iterable[float], levels: str) -> str:
-    """Return a character for each share of 1, out of those for the levels."""
-    top = len(levels) - 1
-    return "".join(levels[round(top * min(max(share, 0.0), 1.0))] for share in shares)
-
-
-def _says(child: Child, supervisor: Supervisor) -> str:
-    if child.running:
-        return supervisor.graph.remarks.get(child.name, "not heard yet")
+def _trouble(child: Child, supervisor: Supervisor) -> str:
+    """Return what is wrong with a node; empty if nothing is known to be."""
     if child.name in supervisor.done_without:
         return supervisor.done_without[child.name]
-    status = child.exit_status
-    if status is None:
-        return "not started yet"
-    return "ended" if status == 0 else f"ended with status {status}"
+    if child.exit_status:
+        return f"ended with status {child.exit_status}"
+    remark = supervisor.graph.remarks.get(child.name, _WELL)
+    return remark if child.running and remark != _WELL else ""
 
 
 def _progress(status: LearnerStatus) -> str:

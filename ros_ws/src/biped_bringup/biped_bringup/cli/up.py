@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -87,9 +87,9 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "learner_node and sim_node as processes, watch them, restart them, and end "
         "them all, the recorder last. A page or a recorder that cannot go on (disk "
         "full, folder unusable) does not stop the walk. Ends when the walk is learned, "
-        "or after --episodes. Exit status 0 when learned (or walked, with --greedy), "
-        "1 when not, or when something could not be saved, 2 for wrong input, 3 when a "
-        "node could not be kept running, 130 when interrupted.",
+        "or after --episodes. Exit status 0 when learned (or walked, with --greedy or "
+        "--static), 1 when not, or when something could not be saved, 2 for wrong "
+        "input, 3 when a node could not be kept running, 130 when interrupted.",
     )
     parser.add_argument(
         "--pace",
@@ -97,11 +97,18 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         default="lockstep",
         help="as fast as all can (default), or 500 Hz in real time",
     )
-    parser.add_argument(
+    once = parser.add_mutually_exclusive_group()
+    once.add_argument(
         "--greedy",
         action="store_true",
         help=f"walk once, greedily, from the {MEMORY_FILE} in --out; learn nothing; "
         "--seed is that of the disturbances, if any",
+    )
+    once.add_argument(
+        "--static",
+        action="store_true",
+        help="walk once, without correction; learn nothing, and leave a "
+        f"{MEMORY_FILE} in --out as it is",
     )
     parser.add_argument(
         "--resume",
@@ -158,7 +165,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         help="no live page (http://127.0.0.1:8080, or the next free port)",
     )
     parser.add_argument(
-        "--plain", action="store_true", help="plain lines instead of a live screen"
+        "--plain", action="store_true", help="plain lines instead of a live line"
     )
     parser.add_argument(
         "--foxglove",
@@ -181,6 +188,21 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Supervise and report."""
+    return supervise(options, report)
+
+
+def supervise(
+    options: argparse.Namespace,
+    told: Callable[[EndedRun], int],
+    page: LivePage | None = None,
+) -> int:
+    """Run the nodes to their end.
+
+    Args:
+        options: of the command.
+        told: of the run that has ended; returns the exit status.
+        page: that shows this run and others; None: one of its own, unless `--no-view`.
+    """
     names = _nodes(options.nodes)
     out = options.out.resolve()
     memory_file = out / MEMORY_FILE
@@ -197,16 +219,18 @@ def run(options: argparse.Namespace) -> int:
     if options.foxglove is not None and find_spec("foxglove") is None:
         raise CommandError("--foxglove: needs pip install 'biped[foxglove]'")
     domain = _domain(options.domain)
-    max_episodes = 1 if options.greedy else options.episodes or 0
+    one_walk = options.greedy or options.static
+    max_episodes = 1 if one_walk else options.episodes or 0
     try:
         parameters = node_parameters(
             settings,
             seed,
-            checkpoint_file=str(memory_file),
+            # Greedy out of an empty memory is no correction at all.
+            checkpoint_file="" if options.static else str(memory_file),
             max_episodes=max_episodes,
             publish_every_ticks=options.publish_every,
             pace=options.pace,
-            frozen=options.greedy,
+            frozen=one_walk,
             recorders=0 if bag is None else 1,
             **real_time_parameters(options),
         ).flat()
@@ -222,7 +246,7 @@ def run(options: argparse.Namespace) -> int:
             seed,
             preset=preset_of(options) if begun_with is None else "",
             pace=options.pace,
-            frozen=options.greedy,
+            frozen=one_walk,
             max_episodes=max_episodes,
             memory_file=begun_with,
         )
@@ -243,9 +267,14 @@ def run(options: argparse.Namespace) -> int:
         elif learned is not None and changes and not options.greedy:
             learned.save(memory_file)
         supervisor, interrupted, failure = _supervise(
-            options, {name: parameters[name] for name in names}, domain, out, changes
+            options,
+            {name: parameters[name] for name in names},
+            domain,
+            out,
+            changes,
+            page,
         )
-        return report(
+        return told(
             EndedRun(
                 supervisor,
                 options,
@@ -264,6 +293,7 @@ def _supervise(
     domain: int,
     folder: Path,
     changes: str,
+    page: LivePage | None,
 ) -> tuple[Supervisor, bool, str | None]:
     """Run the nodes to their end.
 
@@ -273,6 +303,7 @@ def _supervise(
         domain: of the run.
         folder: for parameter files and logs.
         changes: settings that are not those of the memory, in words.
+        page: that shows this run and others; it is looked after, and stays.
 
     Returns:
         The supervisor, whether a signal ended it, and why a node could not be kept
@@ -280,12 +311,14 @@ def _supervise(
     """
     environment = node_environment(domain, options.discovery)
     os.environ.update(environment)  # the supervisor's own node, too
-    screen = StatusScreen(Console(stderr=True), not options.plain, domain)
-    page = None
+    screen = StatusScreen(Console(stderr=True), not options.plain)
+    own_page = None
     failure = None
     with stop_requests() as stops, screen:
-        if not options.no_view:
-            page = LivePage(environment, folder, folder / MEMORY_FILE, screen.line)
+        if page is None and not options.no_view:
+            page = own_page = LivePage(
+                environment, folder, folder / MEMORY_FILE, screen.line
+            )
             page.start()
         screen.line(NAME, f"for other terminals: export ROS_DOMAIN_ID={domain}")
         if changes:
@@ -294,13 +327,13 @@ def _supervise(
         graph = supervisor.graph
 
         def stopped() -> bool:
-            screen.update(supervisor, None if page is None else page.address)
+            screen.update(supervisor)
             if page is not None:
                 page.look_after()
             return bool(stops)
 
         def done() -> bool:
-            if options.greedy:
+            if options.greedy or options.static:
                 return _walked(graph)
             status = graph.status
             return status is not None and (
@@ -313,9 +346,9 @@ def _supervise(
             failure = str(error)
         finally:
             supervisor.stop()
-            if page is not None:
-                page.stop()
-        screen.update(supervisor, None)
+            if own_page is not None:
+                own_page.stop()
+        screen.update(supervisor)
     return supervisor, bool(stops), failure
 
 
@@ -355,6 +388,10 @@ def _nodes(text: str) -> list[str]:
 
 def _learned(options: argparse.Namespace, memory_file: Path) -> TrainingRun | None:
     """Return the run that is gone on with, under the options' settings, if any."""
+    if options.static:
+        if options.fresh or options.resume:
+            raise CommandError("--static: not with --fresh or --resume")
+        return None
     if options.greedy or options.resume:
         if options.fresh:
             raise CommandError("--fresh: cannot be given with --greedy or --resume")

@@ -57,6 +57,11 @@ class EndedRun:
     """Why a node could not be kept running."""
 
     @property
+    def walks_once(self) -> bool:
+        """Whether it was one walk, from which nothing is learned."""
+        return bool(self.options.greedy or self.options.static)
+
+    @property
     def learns_here(self) -> bool:
         """Whether the learner, and so the memory, is this run's."""
         return topics.LEARNER_NODE in self.supervisor.children
@@ -64,7 +69,18 @@ class EndedRun:
 
 def report(run: EndedRun) -> int:
     """Write the table of episodes, print the summary; return the exit status."""
-    summary = _walked(run) if run.options.greedy else _learned(run)
+    summary, status = summarized(run)
+    if run.options.json:
+        print_json(summary)
+    else:
+        for line in _lines(run, summary):
+            print(printable(line))
+    return status
+
+
+def summarized(run: EndedRun) -> tuple[dict[str, Any], int]:
+    """Write the table of episodes; return what came out, and the exit status."""
+    summary = _walked(run) if run.walks_once else _learned(run)
     not_saved = summary["not_saved"]
     if run.failure is not None:
         summary["outcome"], status = "node failure", NODE_FAILURE
@@ -73,12 +89,7 @@ def report(run: EndedRun) -> int:
         status = NOT_ACHIEVED if not_saved else INTERRUPTED
     else:
         status = DONE if summary["completed"] and not not_saved else NOT_ACHIEVED
-    if run.options.json:
-        print_json(summary)
-    else:
-        for line in _lines(run, summary):
-            print(printable(line))
-    return status
+    return summary, status
 
 
 def _walked(run: EndedRun) -> dict[str, Any]:
@@ -98,7 +109,7 @@ def _walked(run: EndedRun) -> dict[str, Any]:
         **walk,
         "not_borne_out": None if unseen is None else unseen.end_cause.value,
         "memory_sha256": None if status is None else status.memory_sha256,
-        "memory_file": str(run.memory_file),
+        "memory_file": None if run.options.static else str(run.memory_file),
         **_of_any_run(run),
         "not_saved": _unwritten(run),
     }
@@ -184,7 +195,7 @@ def _unwritten(run: EndedRun) -> list[str]:
 
 def _lines(run: EndedRun, summary: Mapping[str, Any]) -> Iterator[str]:
     """Return the summary in words."""
-    yield from (_greedy_lines if run.options.greedy else _learning_lines)(summary)
+    yield from (_walk_lines if run.walks_once else _learning_lines)(run, summary)
     if run.supervisor.graph.result is not None:
         causes = summary["given_up_walks"]
         named = f" ({counted(causes)})" if causes else ""
@@ -198,6 +209,8 @@ def _lines(run: EndedRun, summary: Mapping[str, Any]) -> Iterator[str]:
         yield bag_line(Path(bag))
     if run.failure is not None:
         yield f"failed: {run.failure}; logs are in {run.memory_file.parent}"
+    elif run.interrupted and run.options.static:
+        yield "interrupted"
     elif run.interrupted and run.memory_file.exists():
         how = "--greedy" if run.options.greedy else "--resume"
         yield f"interrupted; go on with biped up {how} --out {_out(run)}"
@@ -213,20 +226,21 @@ def _lines(run: EndedRun, summary: Mapping[str, Any]) -> Iterator[str]:
         yield f"not saved: {what}"
 
 
-def _greedy_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+def _walk_lines(run: EndedRun, summary: Mapping[str, Any]) -> Iterator[str]:
     if summary["not_borne_out"] is not None:
         yield (
             "the robot's observations do not bear out: "
             f"the walk ended as {summary['not_borne_out']}"
         )
     elif "end_cause" in summary:
+        kind = "static" if run.options.static else "greedy"
         yield (
-            f"greedy walk: {summary['end_cause']} after {summary['end_time_s']:g} s, "
+            f"{kind} walk: {summary['end_cause']} after {summary['end_time_s']:g} s, "
             f"peak ZMP error {1000 * summary['peak_zmp_error_m']:.1f} mm"
         )
 
 
-def _learning_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+def _learning_lines(_: EndedRun, summary: Mapping[str, Any]) -> Iterator[str]:
     episodes, lacking = summary["episodes"], summary["episodes_not_saved"]
     line = f"{'learned' if summary['completed'] else 'not learned yet'}: "
     line += f"{episodes} episodes"
@@ -244,11 +258,11 @@ def _learning_lines(summary: Mapping[str, Any]) -> Iterator[str]:
 def _next_steps(run: EndedRun, achieved: bool) -> dict[str, str]:
     """Return commands to try, and what for."""
     steps = {}
-    if not run.options.greedy and achieved:
+    if not run.walks_once and achieved:
         steps[f"biped up --greedy --pace realtime --out {_out(run)}"] = (
             "walk it once at 500 Hz"
         )
-    elif run.memory_file.exists() and not run.options.greedy:
+    elif run.memory_file.exists() and not run.walks_once:
         steps[f"biped up --resume --out {_out(run)}"] = "go on learning"
     if run.bag is not None:
         bag = shlex.quote(str(run.bag))

@@ -52,6 +52,8 @@ _LISTENERS = {
     FOXGLOVE: "biped_view/foxglove_bridge",
     TF_NODE: "biped_view/tf_node",
 }
+READY = "is ready (process "
+"""In the line that tells of a node that has come up."""
 _TURN_S = 0.1
 _ENDING_TURN_S = 0.02
 
@@ -196,7 +198,7 @@ class Supervisor:
                 )
                 return
         self._budgets[child.name].ready()
-        self._show(NAME, f"{child.name} is ready (process {child.pid})")
+        self._show(NAME, f"{child.name} {READY}{child.pid})")
 
     def _look_after(self, child: Child, stopped: Callable[[], bool]) -> None:
         if child.name in self.done_without:
