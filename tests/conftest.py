@@ -10,12 +10,25 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 from tests.biped_bringup.runs import UninterruptedRun
 
 from biped_bringup.cli.main import main
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.training import TrainingRun
 
+CHROMIUM = Path("/usr/bin/chromium")
+FLAGS = (
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
 COMMAND = (sys.executable, "-m", "biped_bringup.cli.main")
 
 
@@ -31,6 +44,23 @@ class Outcome:
     def values(self) -> dict[str, Any]:
         """The JSON object that is all of standard output."""
         return json.loads(self.out)
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    """Return a headless Chromium, Debian's.
+
+    Of a module, not of a session: as long as it is there, playwright's event loop is
+    the thread's, and what else would run one cannot.
+    """
+    if not CHROMIUM.exists():
+        pytest.skip(f"no {CHROMIUM}")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=str(CHROMIUM), args=list(FLAGS)
+        )
+        yield browser
+        browser.close()
 
 
 @pytest.fixture

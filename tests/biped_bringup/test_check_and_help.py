@@ -29,7 +29,6 @@ UNITS = {
     "demo": {"--episodes": "episodes"},
     "report": {},
     "view": {},
-    "report": {},
 }
 
 
@@ -145,6 +144,6 @@ def test_every_option_that_takes_a_number_of_units_is_looked_at():
     assert numbers - without_unit == looked_at
 
 
-@pytest.mark.parametrize("verb", UNITS)
+@pytest.mark.parametrize("verb", sorted(UNITS.keys() - {"demo", "view"}))
 def test_the_help_says_how_settings_are_changed(biped, verb):
     assert "gait.double_support_s=1.0 [s]" in biped(verb, "--help").out

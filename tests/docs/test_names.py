@@ -143,7 +143,7 @@ def understood(parsers: Callable[[list[str]], ArgumentParser], said: str) -> Nam
     """
     words = shlex.split(said)[1:]
     names_a_verb = not any(word.startswith("-") for word in words)
-    if names_a_verb and words[0] != "run":  # whose words are another program's
+    if names_a_verb and not (words[0] == "run" and words[1:]):  # of another program
         with pytest.raises(SystemExit, match=r"^0$"):
             parsers(words).parse_args([*words, "--help"])
         return Namespace()

@@ -12,19 +12,8 @@ from pathlib import Path
 from urllib.parse import urldefrag, urljoin, urlparse
 
 import pytest
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Browser
 from tests.docs.pages import TOP
-
-CHROMIUM = Path("/usr/bin/chromium")
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 
 
 @pytest.fixture(scope="module")
@@ -77,21 +66,20 @@ def address(site: Path) -> Iterator[str]:
         server.shutdown()
 
 
-@pytest.mark.skipif(not CHROMIUM.exists(), reason="no Chromium here")
-def test_a_browser_loads_the_pages_without_asking_elsewhere(address: str) -> None:
+def test_a_browser_loads_the_pages_without_asking_elsewhere(
+    address: str, chromium: Browser
+) -> None:
     asked, errors = set[str](), list[str]()
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        page = browser.new_page()
-        page.on("request", lambda request: asked.add(request.url))
-        page.on(
-            "console",
-            lambda said: errors.append(said.text) if said.type == "error" else None,
-        )
-        for name in ("index.html", "ros.html", "results.html", "api/learner.html"):
-            page.goto(address + name, wait_until="load")
-        page.fill("input.md-search__input", "penalty")
-        page.wait_for_selector(".md-search-result__link", timeout=60_000)
-        browser.close()
+    page = chromium.new_page()
+    page.on("request", lambda request: asked.add(request.url))
+    page.on(
+        "console",
+        lambda said: errors.append(said.text) if said.type == "error" else None,
+    )
+    for name in ("index.html", "ros.html", "results.html", "api/learner.html"):
+        page.goto(address + name, wait_until="load")
+    page.fill("input.md-search__input", "penalty")
+    page.wait_for_selector(".md-search-result__link", timeout=60_000)
+    page.close()
     assert not errors
     assert {url for url in asked if not url.startswith((address, "data:"))} == set()

@@ -12,25 +12,14 @@ import numpy as np
 import pytest
 import yaml
 from PIL import Image
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Browser as Chromium
+from playwright.sync_api import Page
 from tests.graph.domains import MODULE, own_domain
 
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
 from biped_ros.environment import LOCALHOST, node_environment
 
-CHROMIUM = Path("/usr/bin/chromium")
-FLAGS = [
-    "--no-sandbox",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
 TIMEOUT_S = 90.0
 # A software renderer draws few pixels fast.
 COARSE = "?fixedDpr=0.3"
@@ -120,15 +109,10 @@ class Browser:
         return np.asarray(Image.open(BytesIO(png)).convert("L"), dtype=np.int16)
 
 
-@pytest.fixture(scope="session")
-def open_tab() -> Iterator[Callable[[str], Browser]]:
+@pytest.fixture(scope="module")
+def open_tab(chromium: Chromium) -> Callable[[str], Browser]:
     """Open addresses in tabs of one Chromium."""
-    if not CHROMIUM.exists():
-        pytest.skip(f"no {CHROMIUM}")
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        yield lambda address: Browser(chromium.new_page(viewport=SIZE), address)
-        chromium.close()
+    return lambda address: Browser(chromium.new_page(viewport=SIZE), address)
 
 
 @pytest.fixture(scope="module")

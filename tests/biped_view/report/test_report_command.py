@@ -8,18 +8,11 @@ import av
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import sync_playwright
 
 from biped_view.report.animation import render_gif, render_mp4
 from biped_view.report.write import write_report
 from biped_view.walk_sources import read_walk
 
-_CHROMIUM = "/usr/bin/chromium"
-_FLAGS = (
-    "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update",
-    "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-)  # fmt: skip
 _PATIENCE_MS = 120_000
 _TICKS = 420
 _FIGURES = {"from_above", "zmp_error", "waist", "joints", "t_err", "states",
@@ -34,32 +27,27 @@ def written(walked_twice, tmp_path_factory):
     return folder
 
 
-@pytest.mark.skipif(not Path(_CHROMIUM).exists(), reason="no Chromium here")
-def test_the_page_opens_offline_without_a_request_or_an_error(written):
+def test_the_page_opens_offline_without_a_request_or_an_error(written, chromium):
     page_address = (written / "report.html").as_uri()
     requests, errors, told = [], [], []
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=_CHROMIUM, args=_FLAGS)
-        context = browser.new_context(
-            offline=True, viewport={"width": 320, "height": 240}
-        )
-        page = context.new_page()
-        page.set_default_timeout(_PATIENCE_MS)
-        page.on("request", lambda request: requests.append(request.url))
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on(
-            "console",
-            lambda message: (errors if message.type == "error" else told).append(
-                message.text
-            ),
-        )
-        page.goto(page_address)
-        in_3d = page.frame_locator("#replay iframe")
-        in_3d.locator("canvas").first.wait_for(state="attached")
-        in_3d.locator("button").first.wait_for()  # of the player's timeline
-        shown = {each.get_attribute("id") for each in page.locator("figure").all()}
-        drawings = page.locator("figure svg").count()
-        browser.close()
+    context = chromium.new_context(offline=True, viewport={"width": 320, "height": 240})
+    page = context.new_page()
+    page.set_default_timeout(_PATIENCE_MS)
+    page.on("request", lambda request: requests.append(request.url))
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on(
+        "console",
+        lambda message: (errors if message.type == "error" else told).append(
+            message.text
+        ),
+    )
+    page.goto(page_address)
+    in_3d = page.frame_locator("#replay iframe")
+    in_3d.locator("canvas").first.wait_for(state="attached")
+    in_3d.locator("button").first.wait_for()  # of the player's timeline
+    shown = {each.get_attribute("id") for each in page.locator("figure").all()}
+    drawings = page.locator("figure svg").count()
+    context.close()
     remote = [url for url in requests if not url.startswith(("data:", "blob:"))]
     assert remote == [page_address]
     assert errors == []
