@@ -78,7 +78,8 @@ def test_a_browser_loads_the_pages_without_asking_elsewhere(
     )
     for name in ("index.html", "ros.html", "results.html", "api/learner.html"):
         page.goto(address + name, wait_until="load")
-    page.fill("input.md-search__input", "penalty")
+    page.wait_for_load_state("networkidle")  # the index of the search has come
+    page.locator("input.md-search__input").press_sequentially("penalty")
     page.wait_for_selector(".md-search-result__link", timeout=60_000)
     page.close()
     assert not errors

@@ -11,8 +11,9 @@ from biped_bringup.cli.main import parser
 
 
 def test_the_static_walk_is_seen_to_fail_and_a_short_run_learns_nothing(
-    biped_process, tmp_path
+    biped_process, tmp_path, domain, monkeypatch
 ):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     ended = biped_process("demo", "--episodes", "1", "--out", tmp_path / "out")
     lines = ended.out.splitlines()
     assert ended.status == 1, ended.err
@@ -24,8 +25,9 @@ def test_the_static_walk_is_seen_to_fail_and_a_short_run_learns_nothing(
 
 
 def test_a_learned_walk_is_shown_and_the_commands_to_try_next_are_real(
-    domain, tmp_path, capfd
+    domain, tmp_path, capfd, monkeypatch
 ):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     (memory,) = BagReader(SAMPLE).attachments()
     (tmp_path / "memory.npz").write_bytes(memory.data)
     shows = demo.Demo(tmp_path, with_page=False)

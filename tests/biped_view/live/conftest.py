@@ -26,7 +26,8 @@ COARSE = "?fixedDpr=0.3"
 SIZE = {"width": 1000, "height": 620}
 ROBOT = {"x": 380, "y": 120, "width": 240, "height": 380}
 
-os.environ.update(node_environment(own_domain(MODULE), LOCALHOST))
+DOMAIN = own_domain(MODULE)
+ENVIRONMENT = os.environ | node_environment(DOMAIN, LOCALHOST)
 
 
 def until(condition: Callable[[], object], what: str) -> None:
@@ -63,6 +64,7 @@ class Graph:
         self.processes[name] = subprocess.Popen(
             [sys.executable, "-m", f"{name}.node", "--ros-args", "--params-file",
              str(file)],
+            env=ENVIRONMENT,
             stderr=subprocess.DEVNULL,
         )  # fmt: skip
 
@@ -128,6 +130,7 @@ def address(graph: Graph) -> Iterator[str]:
     """Return where the graph's page is, a process as the supervisor starts it."""
     view = subprocess.Popen(
         [sys.executable, "-m", "biped_view.live.node"],
+        env=ENVIRONMENT,
         stdout=subprocess.PIPE,
         text=True,
     )

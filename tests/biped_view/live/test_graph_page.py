@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import rclpy
 from rosgraph_msgs.msg import Clock
-from tests.biped_view.live.conftest import until
-from tests.graph.domains import MODULE, own_domain
+from tests.biped_view.live.conftest import DOMAIN, until
 
 MOVED = 15  # levels of grey
 SOME_PIXELS = 50
@@ -25,7 +24,7 @@ def tab(open_tab, address):
 def ticking():
     """Return whether /clock goes on, over half a second."""
     context = rclpy.Context()
-    rclpy.init(context=context, domain_id=own_domain(MODULE))
+    rclpy.init(context=context, domain_id=DOMAIN)
     node = rclpy.create_node("clock_watch", context=context)
     executor = rclpy.executors.SingleThreadedExecutor(context=context)
     executor.add_node(node)

@@ -19,7 +19,7 @@ from biped_bringup.cli.up_report import EndedRun, summarized
 from biped_bringup.supervisor.live_page import LivePage
 from biped_common.command_line import DONE, NOT_ACHIEVED, positive, writable_folder
 from biped_common.terminal_text import printable
-from biped_ros.environment import LOCALHOST, node_environment, private_domain
+from biped_ros.environment import LOCALHOST, node_environment
 from msgs_json.end_cause import EndCause
 
 _DEFAULT_OUT = Path("bags/quick")
@@ -107,7 +107,7 @@ class Demo:
             with_page: show the runs on a live page.
         """
         self._out = writable_folder(out)
-        self._domain = private_domain()
+        self._domain = up.domain_of(None)
         self._page = None
         if with_page:
             environment = os.environ | node_environment(self._domain, LOCALHOST)
@@ -163,7 +163,8 @@ class Demo:
     def show_results(self, walked: dict[str, Any]) -> None:
         """Write the report; say where it, memory and bag lie, and what to try next."""
         out, memory = shlex.quote(str(self._out)), self._out / MEMORY_FILE
-        for name, file in [("memory", memory), *(("bag", b) for b in walked["bags"])]:
+        bags = [("bag", self._out / Path(bag).name) for bag in walked["bags"]]
+        for name, file in [("memory", memory), *bags]:
             print(printable(f"{name:<10} {file}"), flush=True)
         main.main(["report", str(self._out)])
         steps = {

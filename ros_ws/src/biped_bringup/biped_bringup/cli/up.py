@@ -218,7 +218,7 @@ def supervise(
     bag = bag_folder(options, names)
     if options.foxglove is not None and find_spec("foxglove") is None:
         raise CommandError("--foxglove: needs pip install 'biped[foxglove]'")
-    domain = _domain(options.domain)
+    domain = domain_of(options.domain)
     one_walk = options.greedy or options.static
     max_episodes = 1 if one_walk else options.episodes or 0
     try:
@@ -352,7 +352,7 @@ def _supervise(
     return supervisor, bool(stops), failure
 
 
-def _domain(given: int | None) -> int:
+def domain_of(given: int | None) -> int:
     """Return the domain of the run: as given, of the environment, or one of its own.
 
     Raises:

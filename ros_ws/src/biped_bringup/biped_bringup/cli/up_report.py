@@ -121,9 +121,9 @@ def _learned(run: EndedRun) -> dict[str, Any]:
     walked = 0 if graph.status is None else graph.status.episodes
     lacking = max(0, walked - held["episodes"])
     reason = not_saved_because(graph)
-    if run.learns_here and reason:
+    if run.learns_here and (lacking or reason):
         what = f"{lacking} of {walked} episodes" if lacking else "the last trial"
-        not_saved.insert(0, f"{what}: {reason}")
+        not_saved.insert(0, f"{what}: {reason or 'learner_node.log may say why'}")
     return {
         "outcome": "learned" if held["completed"] else "not learned",
         **held,

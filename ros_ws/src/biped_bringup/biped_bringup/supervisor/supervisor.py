@@ -56,6 +56,8 @@ READY = "is ready (process "
 """In the line that tells of a node that has come up."""
 _TURN_S = 0.1
 _ENDING_TURN_S = 0.02
+_LAST_WORDS_S = 0.1
+"""What a node sent last, such as what it could not save, may still be on its way."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +181,7 @@ class Supervisor:
             self.graph.spin(_ENDING_TURN_S)
         if not child.running:
             child.wait(self._patience.end_s)  # until all that it said has been read
-            self.graph.spin(_ENDING_TURN_S)
+            self.graph.spin(_LAST_WORDS_S)
 
     def _start(self, child: Child, stopped: Callable[[], bool]) -> None:
         self.graph.expect(child.name, process_name(child.start()))
