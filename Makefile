@@ -26,7 +26,10 @@ run: $(READY)  ## see the walk fail, be learned on ROS 2, and be walked in real 
 	@$(BIN)/biped demo
 
 test: $(DEV)  ## run the tests
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not thorough"
+
+thorough: $(DEV)  ## run the tests that show the same again under other conditions
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m thorough
 
 lint: $(DEV)  ## check style, types and the direction of imports
 	$(BIN)/ruff check .

@@ -13,8 +13,9 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, ViewportSize, sync_playwright
 
 from biped_ros.environment import LOCALHOST, node_environment
 
@@ -27,7 +28,7 @@ _FLAGS = (
 )
 _IDLE_CHROMIUM = '#!/bin/sh\nexec nice -n 19 /usr/bin/chromium "$@"\n'
 _COARSE = "?fixedDpr=0.1"
-_SIZE = {"width": 1280, "height": 800}
+_SIZE: Final[ViewportSize] = {"width": 1280, "height": 800}
 _END_S = 20.0
 
 

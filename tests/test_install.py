@@ -115,6 +115,7 @@ def test_a_newer_release_in_the_index_changes_nothing(checkout: Checkout) -> Non
     assert checkout.installed() == LOCKED
 
 
+@pytest.mark.thorough
 def test_settings_of_pip_and_uv_neither_speak_nor_count(
     checkout: Checkout, tmp_path: Path
 ) -> None:
@@ -136,6 +137,7 @@ def test_settings_of_pip_and_uv_neither_speak_nor_count(
     assert checkout.installed() == LOCKED
 
 
+@pytest.mark.thorough
 def test_a_lock_that_lacks_a_package_is_refused(checkout: Checkout) -> None:
     lock = checkout.folder / "requirements" / "run.lock"
     lock.write_text(lock.read_text().partition("\n")[0] + "\n")
@@ -144,6 +146,7 @@ def test_a_lock_that_lacks_a_package_is_refused(checkout: Checkout) -> None:
     assert "beta" in done.stderr
 
 
+@pytest.mark.thorough
 def test_a_file_that_was_exchanged_is_refused(checkout: Checkout) -> None:
     add_release(checkout.index, "alpha", "1.0", "beta", "gamma")
     done = checkout.make("install")

@@ -109,6 +109,7 @@ def test_a_verb_that_cannot_be_loaded_is_named_with_its_package(
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.thorough
 def test_a_verb_that_cannot_be_loaded_leaves_the_others_alone(stranger: Path) -> None:
     done = command(stranger, BIPED, "--help")
     assert done.returncode == 0

@@ -49,6 +49,7 @@ def test_the_wheel_contains_nothing_else(wheel: Path) -> None:
     assert folders - {metadata} == {package.name for package in PACKAGES}
 
 
+@pytest.mark.thorough
 def test_biped_works_from_the_wheel(wheel: Path, tmp_path: Path) -> None:
     elsewhere = tmp_path / "venv"
     venv.create(elsewhere, symlinks=True)

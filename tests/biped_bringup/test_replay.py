@@ -79,6 +79,7 @@ memories = st.sampled_from(
 
 @settings(deadline=None, max_examples=25)
 @given(st.lists(scripts, min_size=2, max_size=8), memories)
+@pytest.mark.thorough
 def test_all_is_observed_as_if_every_walk_were_computed(scripts, memory_bytes):
     rng = np.random.default_rng(0)
     seen, results = [], []

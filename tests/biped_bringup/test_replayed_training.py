@@ -39,7 +39,17 @@ class Learned:
     """Of the replayed run, in its middle."""
 
 
-@pytest.fixture(scope="module", params=SETTINGS)
+@pytest.fixture(
+    scope="module",
+    params=[
+        "K = 5",
+        *(
+            pytest.param(name, marks=pytest.mark.thorough)
+            for name in SETTINGS
+            if name != "K = 5"
+        ),
+    ],
+)
 def learned(request, tmp_path_factory) -> Learned:
     settings = SETTINGS[request.param]
     checkpoint = tmp_path_factory.mktemp("replay") / "memory.npz"
@@ -68,11 +78,13 @@ def test_a_replayed_run_that_is_resumed_learns_the_same(learned, training):
     assert record(resumed) == learned.computed
 
 
+@pytest.mark.thorough
 def test_a_replayed_run_that_is_resumed_without_replay_learns_the_same(learned):
     with closing(TrainingRun.load(learned.checkpoint, replay_bytes=0)) as resumed:
         assert record(learn(resumed, EPISODES)) == learned.computed
 
 
+@pytest.mark.thorough
 def test_a_run_that_forgets_its_walks_learns_the_same(learned):
     run = TrainingRun(learned.settings, seed=1, replay_bytes=500_000)
     with closing(run):

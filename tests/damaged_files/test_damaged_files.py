@@ -97,6 +97,7 @@ def test_a_damaged_bag_is_refused_or_read_as_it_was(bag, tmp_path):
     assert other == []
 
 
+@pytest.mark.thorough
 def test_of_a_damaged_bag_nothing_is_recovered_that_was_not_recorded(bag, tmp_path):
     sound = content_of(bag / "bag_0.mcap")
     recorded = Counter(sound["messages"])

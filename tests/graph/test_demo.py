@@ -3,6 +3,7 @@
 import re
 import shlex
 
+import pytest
 from tests.graph.players import SAMPLE
 
 from biped_bag.storage.reader import BagReader
@@ -24,6 +25,7 @@ def test_the_static_walk_is_seen_to_fail_and_a_short_run_learns_nothing(
     assert {file.name for file in (tmp_path / "out").glob("*.npz")} == {"memory.npz"}
 
 
+@pytest.mark.thorough
 def test_a_learned_walk_is_shown_and_the_commands_to_try_next_are_real(
     domain, tmp_path, capfd, monkeypatch
 ):

@@ -14,7 +14,9 @@ EPISODES = 20
 TIMEOUT_S = 90.0
 
 
-@pytest.fixture(scope="module", params=["xol", "q_lambda"])
+@pytest.fixture(
+    scope="module", params=["xol", pytest.param("q_lambda", marks=pytest.mark.thorough)]
+)
 def settings(request):
     """Return the settings of a run with either learner."""
     return load_settings("quick", changes=[f"learner.method={request.param}"])

@@ -281,28 +281,34 @@ def hard_run(tmp_path_factory):
     return left
 
 
+@pytest.mark.thorough
 def test_the_bag_of_a_killed_recorder_is_readable_to_the_end(hard_run):
     # 0.1 s between flushes; ten times that, since other work may be in the way.
     messages = messages_to_the_end(hard_run.bag / "bag_0.mcap")
     assert max(m.log_time for m in messages) > hard_run.killed_ns - 1_000_000_000
 
 
+@pytest.mark.thorough
 def test_the_bag_of_a_killed_recorder_does_not_claim_to_be_complete(hard_run):
     assert STATE_KEY not in read_metadata(hard_run.bag).custom
 
 
+@pytest.mark.thorough
 def test_a_recorder_that_was_killed_begins_another_bag(hard_run):
     assert messages_to_the_end(hard_run.bag.with_name("bag_2") / "bag_2_0.mcap")
 
 
+@pytest.mark.thorough
 def test_on_a_full_disk_the_walk_goes_on_without_a_recorder(hard_run):
     assert "File too large" in hard_run.done_without[RECORDER]
 
 
+@pytest.mark.thorough
 def test_a_full_disk_is_reported_in_diagnostics(hard_run):
     assert any("File too large" in text for text in hard_run.errors)
 
 
+@pytest.mark.thorough
 def test_a_bag_on_a_full_disk_counts_what_is_in_it(hard_run):
     bag = hard_run.bag.with_name("bag_2")
     metadata = read_metadata(bag)

@@ -200,6 +200,7 @@ def test_echo_falls_back_to_what_connects_to_all_publishers(
     assert second is not None
 
 
+@pytest.mark.thorough
 def test_what_cannot_be_is_one_line_and_status_1(
     talker: Talker, capfd: pytest.CaptureFixture[str]
 ) -> None:

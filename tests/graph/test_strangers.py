@@ -110,6 +110,7 @@ def learned_beside(domain, stranger):
         "flood",
     ],
 )
+@pytest.mark.thorough
 def test_a_program_of_another_middleware_changes_nothing(domain, undisturbed, attack):
     learned, told = learned_beside(domain, foreign(domain, attack))
     assert NO_NODE in told
@@ -122,6 +123,7 @@ def test_a_second_robot_changes_nothing(domain, undisturbed):
     assert learned == undisturbed
 
 
+@pytest.mark.thorough
 def test_a_bag_that_is_played_onto_a_live_graph_changes_nothing(domain, undisturbed):
     player = module(
         domain, "biped_bringup.cli.main",
@@ -132,6 +134,7 @@ def test_a_bag_that_is_played_onto_a_live_graph_changes_nothing(domain, undistur
     assert learned == undisturbed
 
 
+@pytest.mark.thorough
 def test_ros2_topic_pub_onto_a_live_graph_changes_nothing(domain, undisturbed):
     publisher = module(
         domain, "ros2_verbs.main",
@@ -198,6 +201,7 @@ def test_a_forged_success_is_no_success(domain, tmp_path):
     assert status == 1
 
 
+@pytest.mark.thorough
 def test_a_learner_that_a_stranger_calls_learned_learns_on(
     domain, tmp_path, undisturbed
 ):

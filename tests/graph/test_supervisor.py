@@ -94,7 +94,16 @@ def graph(tmp_path, domain):
         graph.stop()
 
 
-@pytest.mark.parametrize("name", ["sim_node", "trajectory_node", "learner_node"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "learner_node",
+        *(
+            pytest.param(name, marks=pytest.mark.thorough)
+            for name in ("sim_node", "trajectory_node")
+        ),
+    ],
+)
 def test_after_a_node_was_killed_walks_go_on(graph, name):
     child = graph.supervisor.children[name]
     os.kill(child.pid, signal.SIGKILL)
@@ -112,6 +121,7 @@ def test_a_killed_learner_goes_on_from_its_checkpoint(graph, tmp_path):
     assert graph.supervisor.graph.status.episodes >= saved
 
 
+@pytest.mark.thorough
 def test_a_learner_that_stalls_for_two_seconds_is_not_restarted(graph):
     child = graph.supervisor.children["learner_node"]
     os.kill(child.pid, signal.SIGSTOP)
@@ -121,6 +131,7 @@ def test_a_learner_that_stalls_for_two_seconds_is_not_restarted(graph):
     assert child.starts == 1
 
 
+@pytest.mark.thorough
 def test_a_node_without_a_heartbeat_is_killed_and_started_anew(tmp_path, domain):
     graph = Graph(tmp_path, domain, patience=Patience(silence_s=10.0))
     try:
@@ -180,6 +191,7 @@ def test_a_node_that_cannot_be_what_is_asked_for_is_not_started_again(tmp_path, 
         graph.stop()
 
 
+@pytest.mark.thorough
 def test_in_real_time_a_learner_that_stalls_does_not_stop_the_robot(tmp_path, domain):
     graph = Graph(tmp_path, domain, parameters(tmp_path, pace="realtime"))
     try:
@@ -194,7 +206,14 @@ def test_in_real_time_a_learner_that_stalls_does_not_stop_the_robot(tmp_path, do
         graph.stop()
 
 
-@pytest.mark.parametrize("after_s", [0.3, 1.0, 2.0, 4.0, 8.0])
+@pytest.mark.parametrize(
+    "after_s",
+    [
+        0.3,
+        2.0,
+        *(pytest.param(after, marks=pytest.mark.thorough) for after in (1.0, 4.0, 8.0)),
+    ],
+)
 def test_ctrl_c_ends_all_at_every_stage_of_the_start(tmp_path, domain, after_s):
     process = subprocess.Popen(
         [sys.executable, "-m", "biped_bringup.cli.main", "up", "--preset", "quick",

@@ -163,6 +163,7 @@ def test_json_tells_what_came_out_and_of_which_settings(ended, training):
     assert told["not_saved"] == told["bags"] == []
 
 
+@pytest.mark.thorough
 def test_episodes_that_the_disk_has_no_room_for_are_told_last(domain, tmp_path):
     options = ("--preset", "quick", "--episodes", "25", "--publish-every", "1000")
     with subprocess.Popen(
@@ -195,6 +196,7 @@ def test_on_a_full_disk_the_run_ends_in_order(domain, small_disk):
     assert what[1].startswith(" the rest of ")
 
 
+@pytest.mark.thorough
 def test_parts_of_a_graph_find_each_other_and_a_second_learner_fails(domain, tmp_path):
     body, mind, second = (tmp_path / name for name in ("body", "mind", "second"))
     with (

@@ -40,6 +40,7 @@ def parameters(folder, node):
     return values["ros__parameters"]
 
 
+@pytest.mark.thorough
 def test_a_learned_memory_learns_on_against_a_push_and_a_longer_schedule(
     learned, up, tmp_path
 ):

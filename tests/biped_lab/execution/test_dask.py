@@ -86,6 +86,7 @@ def test_a_cluster_carries_a_study_out_though_a_worker_is_killed_in_the_middle(
     assert left_behind(tmp_path) == []
 
 
+@pytest.mark.thorough
 def test_a_stopped_study_leaves_no_run_going_on_in_a_cluster(cluster, tmp_path):
     cluster.start_worker()
     study = WALKS | {"goal": "schedule", "settings": {}, "most_episodes": 1_000}
@@ -100,6 +101,7 @@ def test_a_stopped_study_leaves_no_run_going_on_in_a_cluster(cluster, tmp_path):
     assert not any(map(is_done, runs))
 
 
+@pytest.mark.thorough
 def test_workers_of_several_threads_are_refused(cluster):
     cluster.start_worker(threads=2)
     with pytest.raises(CommandError, match="start it with --nthreads 1 --nworkers 2"):

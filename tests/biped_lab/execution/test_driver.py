@@ -29,6 +29,7 @@ def test_a_run_that_raises_leaves_the_others_of_its_job_alone(
     assert [is_done(run) for run in planned(tmp_path, study)] == [False, True] * 2
 
 
+@pytest.mark.thorough
 def test_a_run_that_takes_its_worker_with_it_is_given_up_and_the_others_are_done(
     tmp_path, odd_contestants
 ):
@@ -70,6 +71,7 @@ def test_two_drivers_in_one_folder_share_the_runs(tmp_path, odd_contestants):
     assert sittings == [1] * 6
 
 
+@pytest.mark.thorough
 def test_a_stopped_study_goes_on_to_the_same_end(tmp_path, is_the_same):
     stop = threading.Event()
 

@@ -63,6 +63,7 @@ def test_a_driver_that_is_killed_takes_its_workers_with_it_and_goes_on(
     assert left_behind(tmp_path) == []
 
 
+@pytest.mark.thorough
 def test_ctrl_c_keeps_all_episodes_and_the_study_goes_on(driver, tmp_path, is_the_same):
     for process in (driver.pid, *(int(child.name) for child in children(driver.pid))):
         os.kill(process, signal.SIGINT)  # as a terminal does
@@ -75,6 +76,7 @@ def test_ctrl_c_keeps_all_episodes_and_the_study_goes_on(driver, tmp_path, is_th
     assert is_the_same(tmp_path)
 
 
+@pytest.mark.thorough
 def test_a_worker_that_is_killed_is_replaced_and_its_run_goes_on(tmp_path, is_the_same):
     killed = []
 

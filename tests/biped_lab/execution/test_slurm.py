@@ -67,6 +67,7 @@ def test_jobs_carry_a_study_out_though_one_is_ended_in_the_middle(
     assert left_behind(tmp_path / "runs") == []
 
 
+@pytest.mark.thorough
 def test_a_stopped_study_takes_its_jobs_out_of_the_queue(cluster, tmp_path):
     study = WALKS | {"settings": {}, "most_episodes": 1_000}
     study |= {"seeds": {"first": 1, "count": 2}}  # four runs for two processors

@@ -67,6 +67,7 @@ def test_tail_search_walks_two_hard_steps_within_twenty_episodes(begin):
 
 
 @pytest.mark.parametrize("name", SMALL)
+@pytest.mark.thorough
 def test_a_resumed_search_is_the_uninterrupted_one(begin, tmp_path, name):
     whole, first = walk(begin(name), 7), walk(begin(name), 4)
     file = tmp_path / "search.npz"

@@ -26,6 +26,7 @@ def band(share, studies):
 
 
 @pytest.mark.parametrize("seeds", [15, 30])
+@pytest.mark.thorough
 def test_intervals_hold_the_truth_in_95_percent_of_studies(seeds):
     found = calibration.coverage(Scenario(1.5, 0.4, 0.1), seeds, COVERED, rng())
     least, most = band(0.95, COVERED)

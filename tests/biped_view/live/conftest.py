@@ -28,6 +28,7 @@ ROBOT = {"x": 380, "y": 120, "width": 240, "height": 380}
 
 DOMAIN = own_domain(MODULE)
 ENVIRONMENT = os.environ | node_environment(DOMAIN, LOCALHOST)
+os.environ.update(ENVIRONMENT)  # of whoever listens here
 
 
 def until(condition: Callable[[], object], what: str) -> None:
