@@ -13,7 +13,7 @@ export UV_NO_CONFIG := 1
 UV := .venv/installer/bin/uv
 
 .DEFAULT_GOAL := help
-.PHONY: help install dev run test lint format bench docs colcon lock version clean
+.PHONY: help install dev run test thorough lint format bench docs colcon lock version clean
 
 help:  ## list these targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
