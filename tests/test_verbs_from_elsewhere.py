@@ -92,6 +92,7 @@ def test_a_verb_of_somebody_elses_is_run(stranger: Path) -> None:
     assert (done.returncode, done.stdout.split()) == (0, ["dance", "dance"])
 
 
+@pytest.mark.thorough
 def test_a_verb_of_somebody_elses_is_in_the_help(stranger: Path) -> None:
     assert "shake a leg" in command(stranger, BIPED, "--help").stdout
 

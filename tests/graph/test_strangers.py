@@ -117,6 +117,7 @@ def test_a_program_of_another_middleware_changes_nothing(domain, undisturbed, at
     assert learned == undisturbed
 
 
+@pytest.mark.thorough
 def test_a_second_robot_changes_nothing(domain, undisturbed):
     learned, told = learned_beside(domain, module(domain, "sim_node.node"))
     assert "sim_node (this host) and sim_node (this host)" in told

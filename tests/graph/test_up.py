@@ -185,6 +185,7 @@ def test_episodes_that_the_disk_has_no_room_for_are_told_last(domain, tmp_path):
     )
 
 
+@pytest.mark.thorough
 def test_on_a_full_disk_the_run_ends_in_order(domain, small_disk):
     options = ("--preset", "quick", "--episodes", "2")
     said = up(domain, small_disk, *options, record=small_disk / "bag")

@@ -58,6 +58,7 @@ def test_a_learned_memory_learns_on_against_a_push_and_a_longer_schedule(
     assert causes[learned - 1 : learned + 1] == [EndCause.COMPLETED, EndCause.ZMP_ERROR]
 
 
+@pytest.mark.thorough
 def test_a_greedy_walk_is_pushed_and_leaves_its_memory_as_it_was(learned, up, tmp_path):
     before = (tmp_path / "memory.npz").read_bytes()
     ended = up("--greedy", "--seed", 5, changes=PUSHED)

@@ -48,6 +48,7 @@ def queued():
     return asked.stdout.split()
 
 
+@pytest.mark.thorough
 def test_jobs_carry_a_study_out_though_one_is_ended_in_the_middle(
     cluster, tmp_path, is_the_same
 ):

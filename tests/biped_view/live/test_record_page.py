@@ -1,15 +1,24 @@
 """The page of a recorded walk in a real browser: a time slider instead of a graph."""
 
 import threading
+from contextlib import closing
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.biped_view.live.conftest import until
+from tests.graph.players import SAMPLE
 from tests.robots import SHIPPED
 
 from biped_view.live.page import Page
-from biped_view.live.record_source import RecordSource
+from biped_view.live.record_source import (
+    NoPoseError,
+    RecordSource,
+    moment_at,
+    traces_of,
+)
 from biped_view.walk_record import WalkRecord
+from biped_view.walk_sources import read_walk
 from msgs_json.end_cause import EndCause
 
 TICKS = 1000
@@ -49,6 +58,28 @@ def leaning_walk():
         end_cause=EndCause.ZMP_ERROR,
         result=None,
     )
+
+
+def test_of_a_sparse_recording_all_that_is_known_is_shown():
+    record = read_walk(SAMPLE).record  # of every fourth control tick
+    rows = record.known_rows()
+    assert 0 < len(rows) < record.ticks / 3
+    moment = moment_at(record, int(rows[100]))
+    assert np.isfinite(moment.joint_position_rad).all()
+    traces = traces_of(record)
+    assert len(traces.time_s) == 563
+    assert np.isfinite(traces.zmp_error_m).all()
+    peak_m = np.nanmax(np.linalg.norm(record.zmp_error_m, axis=1))
+    assert traces.zmp_error_m.max() == peak_m
+    assert traces.until(1.0).time_s[-1] == 1.0
+
+
+def test_a_walk_without_poses_is_refused():
+    record = leaning_walk()
+    unknown = np.full_like(record.torso_position_m, np.nan)
+    page = Page("a walk", port=0)
+    with closing(page), pytest.raises(NoPoseError, match="were not recorded"):
+        RecordSource(page, replace(record, torso_position_m=unknown))
 
 
 @pytest.fixture

@@ -82,6 +82,14 @@ class WalkRecord:
         """(n, 2) measured minus planned."""
         return self.zmp_m - self.zmp_reference_m
 
+    def known_rows(self) -> NDArray[np.int64]:
+        """Return the rows of which pose, joints and ZMP are known, in their order."""
+        told = np.hstack(
+            (self.joint_position_rad, self.torso_position_m, self.zmp_m,
+             self.zmp_reference_m)
+        )  # fmt: skip
+        return np.flatnonzero(np.isfinite(told).all(axis=1))
+
 
 @dataclass(frozen=True)
 class LoadedWalk:

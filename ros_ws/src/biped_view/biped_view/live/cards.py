@@ -131,13 +131,6 @@ def state_map(learned: StateMap, as_of: str, theme: Theme) -> str:
     )
 
 
-def note(text: str) -> str:
-    """Return a line in place of what is not there."""
-    return (
-        f'<div style="font-size:12px;color:{_SOFT};padding:0 8px">{escape(text)}</div>'
-    )
-
-
 def legend(theme: Theme) -> str:
     """Return what the colours of the scene mean."""
     return (

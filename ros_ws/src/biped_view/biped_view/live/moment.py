@@ -56,6 +56,11 @@ class Traces:
     correction_m: Array
     """(n, 2) chosen by the learner; NaN where none is known."""
 
+    def until(self, time_s: float) -> Traces:
+        """Return the rows up to a time of the walk."""
+        n = int(np.searchsorted(self.time_s, time_s, side="right"))
+        return Traces(self.time_s[:n], self.zmp_error_m[:n], self.correction_m[:n])
+
 
 NO_TRACES = Traces(np.zeros(0), np.zeros(0), np.zeros((0, 2)))
 

@@ -247,12 +247,13 @@ class Page:
         gui.main_panel.set_width(_PANEL_PX)
         self._headline = gui.add_html("")
         self._controls = gui.add_folder("Controls")
-        with gui.add_folder("Learner"):
-            self._learner = gui.add_html(cards.note("Nothing heard of a learner."))
-        with gui.add_folder("States over the waist plane"):
-            self._state_map = gui.add_html(
-                cards.note("Known from a memory file; none has been read yet.")
-            )
+        # What nothing is known of is not shown.
+        self._learner_folder = gui.add_folder("Learner", visible=False)
+        with self._learner_folder:
+            self._learner = gui.add_html("")
+        self._map_folder = gui.add_folder("States over the waist plane", visible=False)
+        with self._map_folder:
+            self._state_map = gui.add_html("")
         dark = gui.add_checkbox("Dark", self._theme.dark)
         dark.on_update(lambda event: self._ask(lambda: self._dark(event.target.value)))
         side = gui.add_panel()
@@ -315,5 +316,7 @@ class Page:
         self._headline.content = cards.headline(*self._head)
         if self._figures is not None:
             self._learner.content = cards.learner_card(self._figures, self._theme)
+            self._learner_folder.visible = True
         if self._map is not None:
             self._state_map.content = cards.state_map(*self._map, self._theme)
+            self._map_folder.visible = True

@@ -16,6 +16,7 @@ _ERROR_HEADROOM: Final = 1.35  # of the limit
 _CORRECTION_SCALE: Final[Any] = {"range": (-30.0, 30.0)}  # [mm]
 _LOGARITHMIC: Final[Any] = {"distr": 3}
 _EMPTY: Final = np.array([0.0, 0.0])
+_OF_EPISODES: Final = "T_err by episode"
 _FONTS: Final[Any] = {"font": "11px sans-serif", "labelFont": "11px sans-serif"}
 _AXES: Final[Any] = ({**_FONTS, "size": 32}, {**_FONTS, "size": 42})
 
@@ -43,9 +44,10 @@ class Plots:
                 cursor={"show": False},
                 height=_HEIGHT_PX,
                 padding=(8, 16, 0, 0),
+                visible=title != _OF_EPISODES,  # until there are some
             )
             for title, series, y_scale in zip(
-                ("ZMP error [mm]", "Correction of the waist [mm]", "T_err by episode"),
+                ("ZMP error [mm]", "Correction of the waist [mm]", _OF_EPISODES),
                 _series(theme),
                 (_error_scale(1.0), _CORRECTION_SCALE, _LOGARITHMIC),
                 strict=True,
@@ -86,6 +88,7 @@ class Plots:
     def show_episodes(self, episodes: Episodes) -> None:
         """Draw T_err of the episodes."""
         if len(episodes.number):
+            self._plots[2].visible = True
             self._plots[2].data = (
                 episodes.number * (1.0 + 1e-9 * self._wiggle),
                 np.where(episodes.completed, episodes.t_err, np.nan),

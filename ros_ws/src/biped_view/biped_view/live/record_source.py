@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
+from biped_common.errors import BipedError
 from biped_common.timing import CONTROL_PERIOD_US, TICKS_PER_LEARNING_TICK, seconds
 from biped_description.robot import Robot
 from biped_view.floor_scene import sole_corners
-from biped_view.live.moment import Array, Course, Moment, Traces
+from biped_view.live.moment import Course, Moment, Traces
 from biped_view.live.page import Page
 from biped_view.walk_record import WalkRecord
 
@@ -22,6 +23,10 @@ _REST_S: Final = 1.0
 _PERIOD_S: Final = CONTROL_PERIOD_US / 1e6
 
 
+class NoPoseError(BipedError):
+    """A walk of which it is not known where the robot was."""
+
+
 class RecordSource:
     """Plays a recorded walk again and again, until a user moves the slider."""
 
@@ -31,7 +36,13 @@ class RecordSource:
         Args:
             page: to fill.
             record: of at least one control tick.
+
+        Raises:
+            NoPoseError: it does not tell where the robot was.
         """
+        self._rows = record.known_rows()
+        if not len(self._rows):
+            raise NoPoseError("poses, joints or ZMP of the walk were not recorded")
         self._page, self._record = page, record
         self._last_s = seconds(record.ticks - 1)
         self._time_s, self._speed, self._playing = 0.0, 1.0, True
@@ -43,7 +54,7 @@ class RecordSource:
         page.set_course(
             Course(record.static_waist_m, record.left_foot_m, record.right_foot_m)
         )
-        self._errors = np.linalg.norm(record.zmp_error_m, axis=1)
+        self._traces = traces_of(record)
         self._set_slider = page.add_time_slider(self._last_s, 0.02, self._moved)
         page.add_buttons("Walk", ("Play", "Stop"), self._pressed)
         page.add_buttons("Speed", tuple(_SPEEDS), self._paced)
@@ -80,8 +91,9 @@ class RecordSource:
     def _show(self, time_s: float) -> None:
         record, page = self._record, self._page
         tick = min(record.ticks - 1, round(time_s / _PERIOD_S))
-        page.show_moment(lambda: self._moment(tick))
-        page.show_traces(lambda: self._traces(tick))
+        row = self._rows[max(0, np.searchsorted(self._rows, tick, side="right") - 1)]
+        page.show_moment(lambda: moment_at(record, int(row)))
+        page.show_traces(lambda: self._traces.until(seconds(tick + 1)))
         phase = "double support" if record.double_support[tick] else "single support"
         side = "right" if record.right_support[tick] else "left"
         detail = f"{time_s:.2f} s, {phase}, {side}"
@@ -90,31 +102,33 @@ class RecordSource:
             detail = f"ended: {cause} at {time_s:.2f} s"
         page.show_state("Playing" if self._playing else "Stopped", detail, good=True)
 
-    def _moment(self, tick: int) -> Moment:
-        record = self._record
-        feet = np.array([record.left_foot_m[tick], record.right_foot_m[tick]])
-        if not record.double_support[tick]:
-            feet = feet[[int(record.right_support[tick])]]
-        return Moment(
-            torso_position_m=record.torso_position_m[tick],
-            torso_quaternion=record.torso_quaternion[tick],
-            joint_position_rad=record.joint_position_rad[tick],
-            zmp_m=record.zmp_m[tick],
-            zmp_reference_m=record.zmp_reference_m[tick],
-            support_m=sole_corners(record.robot, feet),
-            waist_m=record.waist_m[: tick + 1 : _WAY_STRIDE_TICKS],
-            waist_ahead_m=record.waist_m[tick : tick + _AHEAD_TICKS],
-        )
 
-    def _traces(self, tick: int) -> Traces:
-        """Return what was measured up to a tick, a row per learning tick."""
-        ends = np.arange(TICKS_PER_LEARNING_TICK - 1, tick + 1, TICKS_PER_LEARNING_TICK)
-        if not len(ends):
-            return Traces(np.zeros(0), np.zeros(0), np.zeros((0, 2)))
-        errors: Array = self._errors[: ends[-1] + 1]
-        worst = errors.reshape(-1, TICKS_PER_LEARNING_TICK).max(axis=1)
-        if tick > ends[-1]:  # the piece of a learning tick in which it ended
-            ends = np.append(ends, tick)
-            worst = np.append(worst, self._errors[ends[-2] + 1 : tick + 1].max())
-        time_s = np.array([seconds(int(each) + 1) for each in ends])
-        return Traces(time_s, worst, self._record.correction_m[ends])
+def moment_at(record: WalkRecord, row: int) -> Moment:
+    """Return what is to be seen of a walk at a row of which all is known."""
+    feet = np.array([record.left_foot_m[row], record.right_foot_m[row]])
+    if not record.double_support[row]:
+        feet = feet[[int(record.right_support[row])]]
+    return Moment(
+        torso_position_m=record.torso_position_m[row],
+        torso_quaternion=record.torso_quaternion[row],
+        joint_position_rad=record.joint_position_rad[row],
+        zmp_m=record.zmp_m[row],
+        zmp_reference_m=record.zmp_reference_m[row],
+        support_m=sole_corners(record.robot, feet),
+        waist_m=record.waist_m[: row + 1 : _WAY_STRIDE_TICKS],
+        waist_ahead_m=record.waist_m[row : row + _AHEAD_TICKS],
+    )
+
+
+def traces_of(record: WalkRecord) -> Traces:
+    """Return what was measured along a walk, a row per learning tick.
+
+    The ZMP error is the worst of those that were recorded in the learning tick; NaN
+    where none was.
+    """
+    ends = np.arange(TICKS_PER_LEARNING_TICK, record.ticks, TICKS_PER_LEARNING_TICK)
+    ends = np.append(ends, record.ticks)  # also of the piece in which it ended
+    error = np.linalg.norm(record.zmp_error_m, axis=1)
+    worst = np.fmax.reduceat(error, ends - np.diff(ends, prepend=0))
+    time_s = np.array([seconds(int(end)) for end in ends])
+    return Traces(time_s, worst, record.correction_m[ends - 1])

@@ -80,11 +80,7 @@ def shown_rows(record: WalkRecord, every_ticks: int) -> list[int]:
     Each is the last row before its time of which pose, joints and ZMP are known; none
     where these were not recorded.
     """
-    known = np.isfinite(
-        np.hstack((record.joint_position_rad, record.torso_position_m,
-                   record.zmp_m, record.zmp_reference_m))
-    ).all(axis=1)  # fmt: skip
-    rows = np.flatnonzero(known)
+    rows = record.known_rows()
     if not len(rows):
         return []
     wanted = [*range(0, record.ticks - 1, every_ticks), record.ticks - 1]
