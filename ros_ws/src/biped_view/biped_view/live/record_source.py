@@ -91,8 +91,9 @@ class RecordSource:
     def _show(self, time_s: float) -> None:
         record, page = self._record, self._page
         tick = min(record.ticks - 1, round(time_s / _PERIOD_S))
-        row = self._rows[max(0, np.searchsorted(self._rows, tick, side="right") - 1)]
-        page.show_moment(lambda: moment_at(record, int(row)))
+        before = int(np.searchsorted(self._rows, tick, side="right")) - 1
+        row = int(self._rows[max(0, before)])
+        page.show_moment(lambda: moment_at(record, row))
         page.show_traces(lambda: self._traces.until(seconds(tick + 1)))
         phase = "double support" if record.double_support[tick] else "single support"
         side = "right" if record.right_support[tick] else "left"
