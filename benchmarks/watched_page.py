@@ -28,7 +28,7 @@ _FLAGS = (
 )
 _IDLE_CHROMIUM = '#!/bin/sh\nexec nice -n 19 /usr/bin/chromium "$@"\n'
 _COARSE = "?fixedDpr=0.1"
-_SIZE: Final[ViewportSize] = {"width": 1280, "height": 800}
+_SIZE: Final[ViewportSize] = {"width": 640, "height": 400}
 _END_S = 20.0
 
 
