@@ -1,9 +1,10 @@
 """A learned walk in real time on the graph, and the same loop without ROS beside it.
 
 The loop without ROS is the machine's noise floor: the same thread with the same
-deadlines, the same robot, learner and trajectory, called directly. Then the walk with SCHED_FIFO asked for, as `biped demo` does, alone and with
-its live page, at which a browser looks. A walk that the machine was late for ends there,
-and its figures are those up to then.
+deadlines, the same robot, learner and trajectory, called directly. Then the walk with
+SCHED_FIFO asked for, as `biped demo` does, alone and with its live page, at which a
+browser looks. A walk that the machine was late for ends there, and its figures are those
+up to then.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from biped_bringup.supervisor.supervisor import Supervisor
 from biped_bringup.training import TrainingRun
 from biped_description.robot import Robot
 from biped_ros.environment import private_domain
+from biped_ros.processor import ProcessorSettings
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
@@ -35,7 +37,7 @@ from trajectory_node.waist_reference import WaistReference
 _RATE_HZ = 500.0
 _MISSED = "missed 20 ms deadlines"
 _LATENESS, _LATENCY = "control tick lateness", "observation to waist"
-_FIFO = 50
+_FIFO = ProcessorSettings(fifo_priority=50)
 _PERCENTILES = ("p50", "p99", "max")
 
 
@@ -47,9 +49,9 @@ def measure() -> list[Figure]:
         memory_file = Path(folder) / "memory.npz"
         run.save(memory_file)
         listener = _walk_on_the_graph(run, memory_file)
-        first = _walk_on_the_graph(run, memory_file, fifo_priority=_FIFO)
+        first = _walk_on_the_graph(run, memory_file, _FIFO)
         with live_page(private_domain()) as (_, address), browser(address):
-            watched = _walk_on_the_graph(run, memory_file, fifo_priority=_FIFO)
+            watched = _walk_on_the_graph(run, memory_file, _FIFO)
     floor = _walk_without_ros(run)
     run.close()
     heard, found = listener.arrivals_ns, listener.figures
@@ -91,7 +93,7 @@ def _percentiles(
 
 
 def _walk_on_the_graph(
-    run: TrainingRun, memory_file: Path, **real_time: int
+    run: TrainingRun, memory_file: Path, processor: ProcessorSettings | None = None
 ) -> Listener:
     parameters = node_parameters(
         run.settings,
@@ -100,7 +102,7 @@ def _walk_on_the_graph(
         max_episodes=1,
         pace="realtime",
         frozen=True,
-        **real_time,
+        processor=processor,
     )
 
     def walked(supervisor: Supervisor, listener: Listener) -> bool:
