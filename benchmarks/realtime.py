@@ -3,8 +3,8 @@
 The loop without ROS is the machine's noise floor: the same thread with the same
 deadlines, the same robot, learner and trajectory, called directly. Then the walk with
 SCHED_FIFO asked for, as `biped demo` does, alone and with its live page, at which a
-browser looks. A walk that the machine was late for ends there, and its figures are those
-up to then.
+browser looks. A walk that the machine was late for ends there, and its figures are
+those up to then.
 """
 
 from __future__ import annotations
