@@ -10,7 +10,7 @@ from biped_bringup.cli.main import parser
 from msgs_json.topics import OBSERVATION
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/bags.md"])
+@pytest.mark.parametrize("page", ["docs/usage.md", "docs/bags.md"])
 def test_the_first_replay_shows_a_walk(page: str) -> None:
     told = "\n".join(
         block.text

@@ -26,9 +26,9 @@ COARSE = "?fixedDpr=0.3"
 SIZE = {"width": 1000, "height": 620}
 ROBOT = {"x": 380, "y": 120, "width": 240, "height": 380}
 
-DOMAIN = own_domain(MODULE)
+DOMAIN = own_domain(MODULE + 3)
 ENVIRONMENT = os.environ | node_environment(DOMAIN, LOCALHOST)
-os.environ.update(ENVIRONMENT)  # of whoever listens here
+os.environ.update(node_environment(own_domain(MODULE), LOCALHOST))
 
 
 def until(condition: Callable[[], object], what: str) -> None:
