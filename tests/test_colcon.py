@@ -29,6 +29,8 @@ COLCON = Path(sys.executable).with_name("colcon")
 DOMAIN = 215 + os.getpid() % 18
 PATIENCE_S = 240.0
 
+pytestmark = pytest.mark.thorough
+
 
 @dataclass(frozen=True)
 class Workspace:
@@ -220,7 +222,6 @@ def test_an_executable_is_where_ros2_run_looks_for_it(
     assert os.access(workspace.executable(name), os.X_OK)
 
 
-@pytest.mark.thorough
 def test_the_command_line_finds_its_presets(workspace: Workspace) -> None:
     assert workspace.output("biped", "check", "--preset", "quick").startswith("valid")
 
