@@ -84,6 +84,7 @@ def test_the_kinematic_engine_needs_no_pybullet(tmp_path, arguments):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.thorough
 def test_an_engine_that_is_not_installed_is_refused_in_one_line(tmp_path):
     done = run_without_pybullet(tmp_path, "walk", "--static")
     assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)

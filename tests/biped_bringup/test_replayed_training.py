@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from tests.biped_bringup.runs import DISTURBED, SHORT, Record, learn, quick, record
+from tests.thorough import first_always
 
 from biped_bringup.replay import ReplayingWalker
 from biped_bringup.run_settings import RunSettings, load_settings
@@ -41,14 +42,7 @@ class Learned:
 
 @pytest.fixture(
     scope="module",
-    params=[
-        "K = 5",
-        *(
-            pytest.param(name, marks=pytest.mark.thorough)
-            for name in SETTINGS
-            if name != "K = 5"
-        ),
-    ],
+    params=first_always(SETTINGS),
 )
 def learned(request, tmp_path_factory) -> Learned:
     settings = SETTINGS[request.param]
@@ -91,6 +85,7 @@ def test_a_run_that_forgets_its_walks_learns_the_same(learned):
         assert record(learn(run, EPISODES)) == learned.computed
 
 
+@pytest.mark.thorough
 def test_a_checkpoint_does_not_tell_whether_walks_were_replayed(training, tmp_path):
     headers, contents = [], []
     for replay_bytes in (0, 500_000_000):
@@ -128,6 +123,7 @@ def test_another_robot_without_chance_is_replayed(training):
     assert isinstance(training(settings).walker, ReplayingWalker)
 
 
+@pytest.mark.thorough
 def test_replay_can_be_switched_off(biped):
     replayed = biped(*LEARN).values
     computed = biped(*LEARN, "--fresh", "--no-replay").values
@@ -144,6 +140,7 @@ def test_a_report_says_that_walks_were_replayed(biped):
     )
 
 
+@pytest.mark.thorough
 def test_a_report_says_why_no_walk_was_replayed(biped):
     words = [word for word in LEARN if word != "--json"]
     out = biped(*words, "--set", DISTURBED[0]).out
@@ -153,6 +150,7 @@ def test_a_report_says_why_no_walk_was_replayed(biped):
 # -- counts ------------------------------------------------------------------------
 
 
+@pytest.mark.thorough
 def test_without_replay_all_that_was_walked_was_computed(biped):
     values = biped(*LEARN, "--no-replay").values
     walked_s = values["simulated_s"] + values["evaluation_s"]

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.biped_bringup.runs import DISTURBED, SHORT, learn, quick, record
+from tests.thorough import first_always
 
 from biped_bringup.run_settings import load_settings
 from msgs_json.episode_result import EpisodeResult
@@ -78,7 +79,7 @@ def test_a_run_with_a_memory_of_its_own_does_not_touch_another(training):
     [(), DISTURBED, ("learner.method=q_lambda",)],
     ids=["calm", "disturbed", "q_lambda"],
 )
-@pytest.mark.parametrize("saved_after", [1, 3])
+@pytest.mark.parametrize("saved_after", first_always([3, 1]))
 def test_a_resumed_run_is_as_if_never_interrupted(
     training, uninterrupted, tmp_path, saved_after, changes
 ):

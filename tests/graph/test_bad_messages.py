@@ -11,6 +11,7 @@ from std_msgs.msg import String
 from tests.graph.clients import own_publisher
 from tests.graph.domains import MODULE, own_domain
 from tests.robots import SHIPPED
+from tests.thorough import first_always
 
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.one_executor import OneExecutor
@@ -107,7 +108,7 @@ def not_acted_on(graph, topic):
 
 @pytest.mark.parametrize(
     "topic",
-    [topics.OBSERVATION, topics.EPISODE, topics.PLAN],
+    first_always([topics.OBSERVATION, topics.EPISODE, topics.PLAN]),
 )
 def test_malformed_texts_change_nothing(domain, undisturbed, topic):
     kinds = ("empty", "no JSON", "another thing", "NaN", "another version", "garbage")
@@ -121,12 +122,14 @@ def test_corrections_that_are_not_for_now_change_nothing(domain, undisturbed):
     assert learned(domain, flood(topics.CORRECTION, messages)) == undisturbed
 
 
+@pytest.mark.thorough
 def test_segments_of_another_form_change_nothing(domain, undisturbed):
     kind = message_type(topics.WAIST_REFERENCE)
     messages = [kind(), kind(joint_names=["waist"])]
     assert learned(domain, flood(topics.WAIST_REFERENCE, messages)) == undisturbed
 
 
+@pytest.mark.thorough
 def test_a_segment_of_the_past_is_never_walked_again(domain, undisturbed):
     settings = load_settings("quick")
     reference = WaistReference(

@@ -3,6 +3,7 @@
 import time
 
 import pytest
+from tests.thorough import first_always
 
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.one_executor import OneExecutor
@@ -14,9 +15,7 @@ EPISODES = 20
 TIMEOUT_S = 90.0
 
 
-@pytest.fixture(
-    scope="module", params=["xol", pytest.param("q_lambda", marks=pytest.mark.thorough)]
-)
+@pytest.fixture(scope="module", params=first_always(["xol", "q_lambda"]))
 def settings(request):
     """Return the settings of a run with either learner."""
     return load_settings("quick", changes=[f"learner.method={request.param}"])

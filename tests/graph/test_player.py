@@ -144,6 +144,7 @@ def session():
     return done
 
 
+@pytest.mark.thorough
 def test_a_step_publishes_one_message(session):
     assert session.after_steps == STEPS
 

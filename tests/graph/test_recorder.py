@@ -330,6 +330,7 @@ def recorder_alone(domain, folder):
     return done.returncode, done.stderr.splitlines()[-1]
 
 
+@pytest.mark.thorough
 def test_a_folder_that_cannot_be_written_to_ends_the_recorder(domain, tmp_path):
     (tmp_path / "file").touch()
     status, words = recorder_alone(domain, tmp_path / "file/bag")
@@ -338,6 +339,7 @@ def test_a_folder_that_cannot_be_written_to_ends_the_recorder(domain, tmp_path):
     assert words.endswith("Not a directory")
 
 
+@pytest.mark.thorough
 def test_a_folder_that_is_a_bag_ends_the_recorder(domain, run):
     before = read_metadata(run.bag)
     status, words = recorder_alone(domain, run.bag)

@@ -185,6 +185,7 @@ def disturb(process, stranger):
     stranger.terminate()
 
 
+@pytest.mark.thorough
 def test_a_forged_success_is_no_success(domain, tmp_path):
     run = TrainingRun(load_settings("quick"), SEED)
     run.run(1, False, lambda _: True)

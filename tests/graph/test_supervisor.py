@@ -8,6 +8,7 @@ import threading
 import time
 
 import pytest
+from tests.thorough import first_always
 
 from biped_bringup.node_parameters import node_parameters
 from biped_bringup.run_settings import load_settings
@@ -95,14 +96,7 @@ def graph(tmp_path, domain):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        "learner_node",
-        *(
-            pytest.param(name, marks=pytest.mark.thorough)
-            for name in ("sim_node", "trajectory_node")
-        ),
-    ],
+    "name", first_always(["learner_node", "sim_node", "trajectory_node"])
 )
 def test_after_a_node_was_killed_walks_go_on(graph, name):
     child = graph.supervisor.children[name]
@@ -153,6 +147,7 @@ def test_the_silent_peer_is_reported(graph):
     assert reported
 
 
+@pytest.mark.thorough
 def test_a_second_learner_is_refused(graph, processes, tmp_path):
     folder = tmp_path / "second"
     folder.mkdir()
@@ -206,14 +201,7 @@ def test_in_real_time_a_learner_that_stalls_does_not_stop_the_robot(tmp_path, do
         graph.stop()
 
 
-@pytest.mark.parametrize(
-    "after_s",
-    [
-        0.3,
-        2.0,
-        *(pytest.param(after, marks=pytest.mark.thorough) for after in (1.0, 4.0, 8.0)),
-    ],
-)
+@pytest.mark.parametrize("after_s", first_always([2.0, 0.3, 1.0, 4.0, 8.0]))
 def test_ctrl_c_ends_all_at_every_stage_of_the_start(tmp_path, domain, after_s):
     process = subprocess.Popen(
         [sys.executable, "-m", "biped_bringup.cli.main", "up", "--preset", "quick",

@@ -119,6 +119,7 @@ def test_a_greedy_walk_that_is_walked_ends_with_0(domain, learned):
     assert re.search("greedy walk: completed after 11.25 s, peak ZMP", ended.stdout)
 
 
+@pytest.mark.thorough
 def test_a_walk_not_learned_yet_ends_with_1_and_goes_on_when_resumed(domain, tmp_path):
     first = up(domain, tmp_path, "--preset", "quick", "--episodes", "2")
     assert (first.returncode, first.stdout.splitlines()[0][:27]) == (

@@ -64,6 +64,7 @@ def small_disk(tmp_path):
     subprocess.run(["umount", str(folder)], check=True)
 
 
+@pytest.mark.thorough
 def test_a_full_disk_is_told_and_with_more_room_the_study_goes_on(
     small_disk, is_the_same
 ):

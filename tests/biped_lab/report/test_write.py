@@ -60,6 +60,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_report(made_results(folder, [*STRATEGY_1, *unfinished]))
 
 
+@pytest.mark.thorough
 def test_the_page_asks_for_nothing(page: Path) -> None:
     assert not read(page).found
     text = page.read_text()

@@ -52,13 +52,13 @@ class Graph:
             publish_every_ticks=5,
             checkpoint_file=str(folder / "memory.npz"),
         )
-        self._folder, self._parameters = folder, parameters.flat()
+        self.folder, self._parameters = folder, parameters.flat()
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         for name in ("trajectory_node", "learner_node", "sim_node"):
             self.start(name)
 
     def start(self, name: str) -> None:
-        file = self._folder / f"{name}.yaml"
+        file = self.folder / f"{name}.yaml"
         file.write_text(
             yaml.safe_dump({name: {"ros__parameters": self._parameters[name]}})
         )

@@ -66,6 +66,23 @@ def test_pause_stops_the_clock_and_resume_lets_it_go_on(tab, ticking):
     tab.shows("Walking")
 
 
+def test_the_learner_is_frozen_saved_and_let_learn_again(tab, graph):
+    tab.press("Freeze")
+    tab.shows("Frozen: greedy walks")
+    memory = graph.folder / "memory.npz"
+    memory.unlink(missing_ok=True)
+    tab.press("Save")
+    until(memory.exists, "the memory is saved")
+    tab.press("Learn")
+    tab.shows("Learning")
+
+
+def test_a_walk_that_is_reset_is_told_as_that(tab):
+    until(lambda: moved(tab) > SOME_PIXELS, "the robot walks")
+    tab.press("Reset")
+    tab.shows("last walk: reset")
+
+
 def test_a_second_tab_shows_the_same(tab, open_tab, address):
     second = open_tab(address)
     second.shows("Walking")

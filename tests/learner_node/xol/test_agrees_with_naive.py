@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from tests.learner_node.naive_xol import NaiveXol
 from tests.learner_node.xol.random_episodes import Case, runs, seeded_calls
+from tests.thorough import first_always
 
 from learner_node.problem import ActionSpace, Problem
 from learner_node.states import StateSettings
@@ -127,7 +128,7 @@ def long_run(name, seed):
     return case, seeded_calls(case, np.random.default_rng(seed))
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", first_always(range(3)))
 @pytest.mark.parametrize("name", LONG_RUNS)
 def test_long_runs_end_in_the_same_memory(name, seed):
     assert first_disagreement(*long_run(name, seed)) is None
