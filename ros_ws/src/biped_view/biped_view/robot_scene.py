@@ -7,7 +7,6 @@ their joints and placing the torso: whoever draws the scene does the rest.
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import Final
 
 import numpy as np
 import viser
@@ -18,8 +17,6 @@ from biped_description.joints import JOINT_NAMES
 from biped_description.links import TORSO
 
 Array = NDArray[np.float64]
-# Half a millimetre at a foot; less is not seen, and each turn costs the page a message.
-_SEEN_RAD: Final = 1e-3
 
 
 class BadUrdfError(BipedError, ValueError):
@@ -87,10 +84,9 @@ class RobotScene:
         angles = np.array(joint_position_rad, dtype=np.float64)
         half = angles[:, None] / 2
         turns = np.hstack((np.cos(half), np.sin(half) * self._axes))
-        turned = np.flatnonzero(np.abs(angles - self._angles_rad) > _SEEN_RAD)
-        for joint in turned:
+        for joint in np.flatnonzero(angles != self._angles_rad):
             self._frames[joint].wxyz = turns[joint]
-        self._angles_rad[turned] = angles[turned]
+        self._angles_rad = angles
 
 
 def _add_shapes(
