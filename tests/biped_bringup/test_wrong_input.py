@@ -45,6 +45,11 @@ REFUSED = {
         r"gives gait\.double_support_s a second time"
     ),
     'check --set gait.steps=2 --set gait={"steps":2}': r"gives gait\.steps a second",
+    "view none": r"none: no such file or folder",
+    "view --port 99999": r"99999: must be at most 65535",
+    "view --domain 500": r"--domain, ROS_DOMAIN_ID: must be from 0 to 232",
+    "demo --out a_file": r"a_file: must be a folder that can be written to",
+    "up --foxglove 99999": r"99999: must be at most 65535",
     "learn --out a_file": r"a_file: must be a folder that can be written to",
     "learn --out a_file/out": r"a_file/out: must be a folder that can be written to",
     "learn --resume none.npz": r"none\.npz: no such file",

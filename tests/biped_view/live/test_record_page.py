@@ -10,7 +10,7 @@ from tests.biped_view.live.conftest import until
 from tests.graph.players import SAMPLE
 from tests.robots import SHIPPED
 
-from biped_view.live.page import Page
+from biped_view.live.page import Page, PortError
 from biped_view.live.record_source import (
     NoPoseError,
     RecordSource,
@@ -80,6 +80,13 @@ def test_a_walk_without_poses_is_refused():
     page = Page("a walk", port=0)
     with closing(page), pytest.raises(NoPoseError, match="were not recorded"):
         RecordSource(page, replace(record, torso_position_m=unknown))
+
+
+def test_a_port_that_is_taken_is_refused():
+    with closing(Page("a walk", port=0)) as page:
+        port = int(page.address.rpartition(":")[2])
+        with pytest.raises(PortError, match=f"port {port} on 127.0.0.1: Address"):
+            Page("another", port)
 
 
 @pytest.fixture

@@ -18,6 +18,8 @@ WRONG_INPUT = 2
 NODE_FAILURE = 3
 INTERRUPTED = 130
 
+_LAST_PORT = 65_535
+
 
 class CommandError(BipedError, ValueError):
     """Options that do not go together, or a folder that cannot be used."""
@@ -85,6 +87,14 @@ def natural(text: str) -> int:
     value = int(text)
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text}: must be at least 0")
+    return value
+
+
+def tcp_port(text: str) -> int:
+    """Parse the number of a TCP port; 0 is any that is free."""
+    value = natural(text)
+    if value > _LAST_PORT:
+        raise argparse.ArgumentTypeError(f"{text}: must be at most {_LAST_PORT}")
     return value
 
 

@@ -45,6 +45,7 @@ from biped_common.command_line import (
     add_json_option,
     natural,
     positive,
+    tcp_port,
     writable_folder,
 )
 from biped_common.exclusive_folder import exclusive_folder
@@ -170,7 +171,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     parser.add_argument(
         "--foxglove",
         nargs="?",
-        type=natural,
+        type=tcp_port,
         const=_FOXGLOVE_PORT,
         metavar="PORT",
         help="show the graph to Foxglove, on this port of 127.0.0.1 (default "

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from biped_common.command_line import DONE, WRONG_INPUT, CommandParser, natural
+from biped_common.command_line import DONE, WRONG_INPUT, CommandParser, tcp_port
 from biped_common.errors import BipedError
 from biped_common.signals import loading, stop_requests
 
@@ -54,7 +54,7 @@ def show_graph(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the page as a process."""
     parser = CommandParser(prog="view", description="The live page of a graph.")
-    parser.add_argument("--port", type=natural, help="default: 8080, or the next free")
+    parser.add_argument("--port", type=tcp_port, help="default: 8080, or the next free")
     parser.add_argument("--memory", type=Path, help="file that the learner writes")
     options = parser.parse_args(arguments)
     os.setpriority(os.PRIO_PROCESS, 0, _LOWEST)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import queue
+import socket
 import time
 from collections.abc import Callable
 from contextlib import redirect_stdout
@@ -54,6 +55,16 @@ class _Server(viser.ViserServer):
         return None
 
 
+def _refuse_unusable(port: int) -> None:
+    """Refuse a port that cannot be listened on; viser would wait for it for ever."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((HOST, port))
+        except OSError as error:
+            raise PortError(f"port {port} on {HOST}: {error.strerror}") from None
+
+
 class Page:
     """What a browser shows; sources of walks and learners fill it."""
 
@@ -66,8 +77,10 @@ class Page:
             dark: begin in the dark theme.
 
         Raises:
-            PortError: the port is taken.
+            PortError: the port cannot be had.
         """
+        if port:
+            _refuse_unusable(port)
         with redirect_stdout(io.StringIO()):  # viser announces itself
             self._server = _Server(
                 HOST, FIRST_PORT if port is None else port, title, verbose=False

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from biped_common.command_line import DONE, CommandError, natural, positive
+from biped_common.command_line import DONE, CommandError, natural, positive, tcp_port
 from biped_common.signals import stop_requests
 from biped_ros.environment import LAST_DOMAIN, LOCALHOST, node_environment
 
@@ -50,7 +50,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         "checkpoint",
     )
     parser.add_argument(
-        "--port", type=natural, metavar="N", help="default: 8080, or the next free one"
+        "--port", type=tcp_port, metavar="N", help="default: 8080, or the next free one"
     )
     parser.add_argument("--dark", action="store_true", help="begin in the dark theme")
     parser.set_defaults(run=run)
