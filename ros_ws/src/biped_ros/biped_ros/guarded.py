@@ -261,6 +261,11 @@ class GuardedNode(Node):  # type: ignore[misc]
             self.remark(DiagnosticStatus.WARN, f"{topic.name} dropped", text)
             self.get_logger().warning(text, throttle_duration_sec=1.0)
 
+    def warn(self, text: str) -> None:
+        """Log a warning, and put it into the next diagnostics."""
+        self.get_logger().warning(printable(text))
+        self.remark(DiagnosticStatus.WARN, text, text)
+
     # -- diagnostics ---------------------------------------------------------------
 
     def remark(self, level: bytes, key: str, text: str) -> None:

@@ -59,6 +59,7 @@ _SAID = (
     topics.WAIST_REFERENCE,
     topics.TORSO_POSE,
 )
+_TOLD = ("command", "start", "preset", "seed", "pace", "frozen", "git_commit")
 _N = len(JOINT_NAMES)
 
 
@@ -103,9 +104,6 @@ def walk_of_bag(path: Path, number: int | None = None) -> LoadedWalk:
         {name: text for name, text in facts.items() if text},
         (*remarks, *without),
     )
-
-
-_TOLD = ("command", "start", "preset", "seed", "pace", "frozen", "git_commit")
 
 
 # -- what the bag says of the run ------------------------------------------------------

@@ -37,7 +37,6 @@ class FloorScene:
         sole_thickness_m: float,
         zmp_limit_m: float,
         theme: Theme,
-        name: str = "/walk",
     ) -> None:
         """Add the floor; what moves appears with its first place.
 
@@ -46,9 +45,8 @@ class FloorScene:
             sole_thickness_m: of the robot's feet; what they would hide is drawn above.
             zmp_limit_m: norm of the ZMP error at which the walk fails.
             theme: of all colours.
-            name: of the part of the scene's tree that this fills.
         """
-        self._scene, self._name, self._lift_m = scene, name, sole_thickness_m
+        self._scene, self._lift_m = scene, sole_thickness_m
         self._zmp_limit_m, self._theme = zmp_limit_m, theme
         self._paths: dict[str, viser.LineSegmentsHandle] = {}
         self._corners: Array | None = None
@@ -57,7 +55,7 @@ class FloorScene:
     def paint(self, theme: Theme) -> None:
         """Draw in the colours of a theme, anew if need be."""
         self._theme = theme
-        scene, name = self._scene, self._name
+        scene = self._scene
         for path in self._paths.values():
             path.remove()
         self._paths.clear()
@@ -78,16 +76,16 @@ class FloorScene:
             position=(0.0, 0.0, -0.001),
         )
         self._reference = scene.add_frame(
-            f"{name}/reference", show_axes=False, visible=False
+            "/walk/reference", show_axes=False, visible=False
         )
         _flat_disc(
-            scene, f"{name}/reference/limit", self._zmp_limit_m, theme.limit, _LIMIT_Z
+            scene, "/walk/reference/limit", self._zmp_limit_m, theme.limit, _LIMIT_Z
         )
         angles = np.linspace(0.0, 2 * np.pi, _CIRCLE_POINTS)
         ring = self._zmp_limit_m * np.column_stack((np.cos(angles), np.sin(angles)))
-        self._line(f"{name}/reference/ring", _at(ring, _LIMIT_Z), theme.limit)
+        self._line("/walk/reference/ring", _at(ring, _LIMIT_Z), theme.limit)
         scene.add_icosphere(
-            f"{name}/reference/dot",
+            "/walk/reference/dot",
             _DOT_M,
             theme.zmp_reference,
             scale=(1.0, 1.0, 0.2),
@@ -95,7 +93,7 @@ class FloorScene:
             cast_shadow=False,
         )
         self._zmp = scene.add_icosphere(
-            f"{name}/zmp",
+            "/walk/zmp",
             _DOT_M,
             theme.zmp,
             scale=(1.0, 1.0, 0.2),
@@ -124,7 +122,7 @@ class FloorScene:
         corners = np.asarray(corners_m, dtype=np.float64).reshape(-1, 2)
         if self._corners is not None and np.array_equal(corners, self._corners):
             return
-        name, first = f"{self._name}/support", self._corners is None
+        name, first = "/walk/support", self._corners is None
         self._corners = corners
         if not len(corners):
             if not first:
@@ -160,7 +158,7 @@ class FloorScene:
             return
         if path is None:
             colour = getattr(self._theme, which)
-            self._paths[which] = self._line(f"{self._name}/{which}", points, colour)
+            self._paths[which] = self._line(f"/walk/{which}", points, colour)
             return
         path.points = _segments(points).astype(np.float32)
         path.visible = True

@@ -17,6 +17,8 @@ from biped_description.joints import JOINT_NAMES
 from biped_description.links import TORSO
 
 Array = NDArray[np.float64]
+_NAME = "/robot"
+"""Of the torso's frame in the scene's tree."""
 
 
 class BadUrdfError(BipedError, ValueError):
@@ -26,31 +28,30 @@ class BadUrdfError(BipedError, ValueError):
 class RobotScene:
     """A robot that can be moved, under one name of the scene's tree."""
 
-    def __init__(self, scene: viser.SceneApi, urdf: str, name: str = "/robot") -> None:
+    def __init__(self, scene: viser.SceneApi, urdf: str) -> None:
         """Add the robot to the scene, joints at zero, torso at the origin.
 
         Args:
             scene: of a viser server.
             urdf: of a robot such as `Robot.urdf` describes.
-            name: of the torso's frame in the scene's tree.
 
         Raises:
             BadUrdfError: it is no URDF of a robot with our joints.
         """
         try:
-            self._add(scene, ET.fromstring(urdf), name)
+            self._add(scene, ET.fromstring(urdf))
         except (ET.ParseError, AssertionError, LookupError, ValueError) as error:
             raise BadUrdfError(f"URDF of another robot, or none: {error}") from None
 
-    def _add(self, scene: viser.SceneApi, urdf: ET.Element, name: str) -> None:
+    def _add(self, scene: viser.SceneApi, urdf: ET.Element) -> None:
         colours = {
             material.attrib["name"]: _numbers(material.find("color"), "rgba")
             for material in urdf.iterfind("material")
         }
         links = {link.attrib["name"]: link for link in urdf.iterfind("link")}
-        self._torso = scene.add_frame(name, show_axes=False)
-        _add_shapes(scene, name, links[TORSO], colours)
-        paths = {TORSO: name}
+        self._torso = scene.add_frame(_NAME, show_axes=False)
+        _add_shapes(scene, _NAME, links[TORSO], colours)
+        paths = {TORSO: _NAME}
         joints: dict[str, tuple[viser.FrameHandle, Array]] = {}
         for joint in urdf.iterfind("joint"):  # from the torso down
             parent, child = _name(joint, "parent"), _name(joint, "child")

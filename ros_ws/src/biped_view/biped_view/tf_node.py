@@ -16,13 +16,9 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-import rclpy
-from diagnostic_msgs.msg import DiagnosticStatus
-
-from biped_bag.recorder.intake import Intake
+from biped_bag.recorder.intake import Intake, listener_beside
 from biped_bag.selection import Selection
 from biped_common.errors import BipedError
-from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
 from biped_ros.link_transforms import (
     MADE_OF,
@@ -58,14 +54,9 @@ class TfNode(GuardedNode):
         except ImportError as error:
             raise NoTypeError(str(error)) from None
         self._source = TransformSource()
-        self._listener = rclpy.create_node(
-            f"_{NAME}_intake",
-            context=self.context,
-            enable_rosout=False,
-            start_parameter_services=False,
-        )
+        self._listener = listener_beside(self)
         wanted = Selection(names=frozenset(topic.name for topic in MADE_OF))
-        self._intake = Intake(self._listener, wanted, lambda _: None, self._warn)
+        self._intake = Intake(self._listener, wanted, lambda _: None, self.warn)
         self._intake.expect(MADE_OF)
         self.create_timer(_TURN_S, self._turn)
 
@@ -78,14 +69,10 @@ class TfNode(GuardedNode):
             try:
                 made = self._source.hear(message.topic, message.data)
             except RobotDescriptionError as error:
-                self._warn(f"{TF.name} cannot be made: {error}")
+                self.warn(f"{TF.name} cannot be made: {error}")
                 continue
             if made is not None:
                 self._tf.publish(made)
-
-    def _warn(self, text: str) -> None:
-        self.get_logger().warning(printable(text))
-        self.remark(DiagnosticStatus.WARN, text, text)
 
 
 def main() -> int:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from biped_bringup.run_settings import RunSettings
 from biped_description.settings import RobotSettings
@@ -89,6 +89,17 @@ class WalkRecord:
              self.zmp_reference_m)
         )  # fmt: skip
         return np.flatnonzero(np.isfinite(told).all(axis=1))
+
+
+def last_known(known: NDArray[np.int64], rows: ArrayLike) -> NDArray[np.int64]:
+    """Return for each row the last known one up to it, or the first known one.
+
+    Args:
+        known: (n,) rows, n > 0, in their order.
+        rows: (m,) rows of the walk.
+    """
+    before = np.searchsorted(known, rows, side="right") - 1
+    return known[np.maximum(before, 0)]
 
 
 @dataclass(frozen=True)

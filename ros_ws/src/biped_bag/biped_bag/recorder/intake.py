@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import rclpy
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
@@ -44,6 +45,16 @@ class IncomingTopic:
     announced: bool = False
     publishers_there: int = 0
     gids: set[bytes] = field(default_factory=set)
+
+
+def listener_beside(node: Node) -> Node:
+    """Return a node for the subscriptions of another one's intake; nobody spins it."""
+    return rclpy.create_node(
+        f"_{node.get_name()}_intake",
+        context=node.context,
+        enable_rosout=False,
+        start_parameter_services=False,
+    )
 
 
 class Intake:

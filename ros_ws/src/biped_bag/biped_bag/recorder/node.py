@@ -25,7 +25,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
 from mcap.records import Attachment
 from std_srvs.srv import Trigger
@@ -33,7 +32,7 @@ from std_srvs.srv import Trigger
 from biped_bag.errors import BagError
 from biped_bag.recorder.counts import counts_of, counts_table
 from biped_bag.recorder.episodes import EpisodeRecords
-from biped_bag.recorder.intake import Intake
+from biped_bag.recorder.intake import Intake, listener_beside
 from biped_bag.recorder.settings import RecorderSettings
 from biped_bag.recorder.writer_thread import WriterThread
 from biped_bag.records import (
@@ -84,23 +83,18 @@ class RecorderNode(GuardedNode):
         self._recording: WriterThread | None = None
         self._episodes = EpisodeRecords()
         self._waiting: list[BagMessage] = []
-        self._listener = rclpy.create_node(
-            f"_{NAME}_intake",
-            context=self.context,
-            enable_rosout=False,
-            start_parameter_services=False,
-        )
+        self._listener = listener_beside(self)
         self._intake = Intake(
             self._listener,
             selection,
             self._announce,
-            self._warn,
+            self.warn,
             sim_time=self._settings.sim_time,
         )
         self._transforms: MadeTransforms | None = None
         if self._settings.make_tf and selection.wants(TF.name, [TF.type_name]):
             self._intake.leave_out(TF.name)  # one publisher of each transform is enough
-            self._transforms = MadeTransforms(self._announce, self._warn)
+            self._transforms = MadeTransforms(self._announce, self.warn)
         if self._settings.start_paused:
             # For strangers on the graph only where it was asked for.
             self._intake.paused = True
@@ -240,10 +234,6 @@ class RecorderNode(GuardedNode):
     def _announce(self, topic: BagTopic) -> None:
         if self._recording is not None:
             self._recording.do(lambda bag: bag.add_topic(topic))
-
-    def _warn(self, text: str) -> None:
-        self.get_logger().warning(printable(text))
-        self.remark(DiagnosticStatus.WARN, text, text)
 
     def _stop_recording(self, reason: str) -> None:
         """Say why nothing is recorded any more, and end the node a little later."""

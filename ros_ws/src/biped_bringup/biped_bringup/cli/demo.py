@@ -53,11 +53,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         metavar="N",
         help="give up learning after N episodes (default %(default)s)",
     )
-    parser.add_argument(
-        "--no-view",
-        action="store_true",
-        help="no live page (http://127.0.0.1:8080, or the next free port)",
-    )
+    up.add_page_option(parser)
     parser.set_defaults(run=run)
 
 

@@ -65,8 +65,7 @@ from trajectory_node.waist_reference import WaistReference
 _ATTEMPTS = 5
 _DEFAULT_OUT = Path("bags/up")
 _FOXGLOVE_PORT = 8765
-# Settings of nodes that are given as options.
-# By the setting that each gives.
+# By the setting of a node that each gives.
 _OPTIONS = {
     "publish_every_ticks": "--publish-every",
     "seed": "--seed",
@@ -160,11 +159,7 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
         metavar="TICKS",
         help="control ticks (2 ms) between messages of the fast topics (default 1)",
     )
-    parser.add_argument(
-        "--no-view",
-        action="store_true",
-        help="no live page (http://127.0.0.1:8080, or the next free port)",
-    )
+    add_page_option(parser)
     parser.add_argument(
         "--plain", action="store_true", help="plain lines instead of a live line"
     )
@@ -185,6 +180,15 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
     add_settings_options(parser)
     add_json_option(parser)
     parser.set_defaults(run=run)
+
+
+def add_page_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option that leaves out the live page."""
+    parser.add_argument(
+        "--no-view",
+        action="store_true",
+        help="no live page (http://127.0.0.1:8080, or the next free port)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -253,7 +253,14 @@ class Supervisor:
 
 
 def _module(name: str) -> str:
-    """Return the module that runs a node."""
+    """Return the module that runs a node.
+
+    Raises:
+        NodeFailureError: no package here has it.
+    """
     if name in _MODULES:
         return _MODULES[name]
-    return entry_points("biped.nodes")[_LISTENERS[name]].module
+    point = entry_points("biped.nodes").get(_LISTENERS[name])
+    if point is None:
+        raise NodeFailureError(f"{name}: no installed package has {_LISTENERS[name]}")
+    return point.module

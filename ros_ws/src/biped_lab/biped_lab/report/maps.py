@@ -25,10 +25,10 @@ from biped_lab.report.finished import EPISODES, FinishedRuns
 from biped_lab.report.marks import wrapped
 from biped_lab.report.theme import new_figure
 from learner_node.checkpoint import CheckpointError, read_checkpoint, taking_over
-from learner_node.walking.task import COMPONENTS, INPUT_NAMES, N_DISCRETE, WalkTask
+from learner_node.walking.task import COMPONENTS, WalkTask
+from learner_node.walking.waist_plane import waist_of_states
 from learner_node.xol.selection import choose_greedy
 
-_WAIST = [INPUT_NAMES.index(name) - N_DISCRETE for name in ("waist_x", "waist_y")]
 _PREFIX = "memory/"
 _VISITS = LinearSegmentedColormap.from_list("visits", ("#cfe5f3", SKY, BLUE, "#00263d"))
 _ROW_IN = 1.45
@@ -74,9 +74,8 @@ def read_map(path: Path) -> LearnedMap:
     with taking_over(path):
         settings = from_mapping(RunSettings, header["settings"]).learner
         task = WalkTask(settings, walk_ticks=1)
-        radii = np.array(settings.inputs.radii)[_WAIST]
         return LearnedMap(
-            memory["state_centers"][:, _WAIST] * radii,
+            waist_of_states(settings, memory["state_centers"]),
             memory["selections"][:, 0].sum(axis=1),
             _greedy_correction_m(task, memory),
             memory["fixed"],

@@ -18,17 +18,13 @@ import sys
 from dataclasses import dataclass
 from typing import Any
 
-import rclpy
-from diagnostic_msgs.msg import DiagnosticStatus
-
 from biped_bag.qos import as_rosbag2
-from biped_bag.recorder.intake import Intake
+from biped_bag.recorder.intake import Intake, listener_beside
 from biped_bag.selection import Selection
 from biped_bag.storage.contents import BagTopic
 from biped_bag.transforms import MadeTransforms
 from biped_common.errors import BipedError
 from biped_common.settings import Settings, setting
-from biped_common.terminal_text import printable
 from biped_ros.guarded import GuardedNode
 from biped_ros.link_transforms import TF
 from biped_ros.qos import qos_profile
@@ -83,17 +79,12 @@ class FoxgloveBridge(GuardedNode):
             for t in (*expected, TF)
         ]
         self.server = FoxgloveServer("biped", settings.port, offered)
-        self._listener = rclpy.create_node(
-            f"_{NAME}_intake",
-            context=self.context,
-            enable_rosout=False,
-            start_parameter_services=False,
-        )
+        self._listener = listener_beside(self)
         self._intake = Intake(
-            self._listener, Selection(), self.server.add_topic, self._warn
+            self._listener, Selection(), self.server.add_topic, self.warn
         )
         self._intake.leave_out(TF.name)
-        self._transforms = MadeTransforms(self.server.add_topic, self._warn)
+        self._transforms = MadeTransforms(self.server.add_topic, self.warn)
         self._intake.expect(expected)
         self.create_timer(_TURN_S, self._turn)
         self.create_timer(_LOOK_PERIOD_S, self._intake.look_around)
@@ -108,10 +99,6 @@ class FoxgloveBridge(GuardedNode):
         for message in self._transforms.put_in(self._intake.take()):
             self.server.send(message)
         self.server.repeat_latched()
-
-    def _warn(self, text: str) -> None:
-        self.get_logger().warning(printable(text))
-        self.remark(DiagnosticStatus.WARN, text, text)
 
 
 def main() -> int:

@@ -10,8 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from biped_view.live.moment import LearnerFigures, StateMap
+from biped_view.live.moment import LearnerFigures
 from biped_view.theme import Colour, Theme, css
+from learner_node.walking.waist_plane import LearnedStates
 
 _SOFT: Final = "var(--mantine-color-dimmed)"
 _LINE: Final = "var(--mantine-color-default-border)"
@@ -66,7 +67,7 @@ def learner_card(figures: LearnerFigures, theme: Theme) -> str:
     )
 
 
-def state_map(learned: StateMap, as_of: str, theme: Theme) -> str:
+def state_map(learned: LearnedStates, as_of: str, theme: Theme) -> str:
     """Return a map of the states over the waist plane, coloured by mode.
 
     Args:
@@ -99,16 +100,12 @@ def state_map(learned: StateMap, as_of: str, theme: Theme) -> str:
             f'<text x="{left - 5}" y="{py(value) + 3:.1f}" '
             f'text-anchor="end">{100 * value:.0f}</text>'
         )
-    exploring = ~(learned.fixed | learned.penalty)
-    for of_kind, colour in (
-        (exploring, theme.exploring),
-        (learned.fixed & ~learned.penalty, theme.fixed),
-        (learned.penalty, theme.penalty),
-    ):
+    for mode, which in learned.modes.items():
+        colour = getattr(theme, mode)
         parts += [
             f'<circle cx="{px(x):.1f}" cy="{py(y):.1f}" r="4.5" '
             f'fill="{css(colour, 0.75)}" stroke="{css(colour)}"/>'
-            for x, y in learned.waist_m[of_kind]
+            for x, y in learned.waist_m[which]
         ]
     parts.append(
         f'<text x="{(left + width - right) / 2}" y="{height - 3}" '
@@ -152,7 +149,7 @@ def legend(theme: Theme) -> str:
     )
 
 
-def _bounds(learned: StateMap) -> tuple[float, float, float, float]:
+def _bounds(learned: LearnedStates) -> tuple[float, float, float, float]:
     """Return what of the plane is shown [m]: the usual part, or more if need be."""
     x_low, x_high, y_low, y_high = _MAP_M
     if len(learned.waist_m):

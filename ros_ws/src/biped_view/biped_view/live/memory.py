@@ -12,18 +12,15 @@ from biped_bringup.run_settings import RunSettings
 from biped_common.errors import BipedError
 from biped_common.settings import from_mapping
 from biped_common.timing import seconds
-from biped_view.live.moment import Episodes, LearnerFigures, StateMap
+from biped_view.live.moment import Episodes, LearnerFigures
 from biped_view.live.page import Page
 from learner_node.checkpoint import read_checkpoint, taking_over
 from learner_node.walking.session import LearningSession
-from learner_node.walking.task import INPUT_NAMES, N_DISCRETE
+from learner_node.walking.waist_plane import LearnedStates, learned_states
 from msgs_json.end_cause import EndCause
 from msgs_json.learner_status import LearnerStatus
 
 _LOOK_S: Final = 2.0
-_WAIST: Final = [
-    INPUT_NAMES.index(name) - N_DISCRETE for name in ("waist_x", "waist_y")
-]
 
 
 class Memory(NamedTuple):
@@ -31,8 +28,7 @@ class Memory(NamedTuple):
 
     figures: LearnerFigures
     episodes: Episodes
-    states: StateMap | None
-    """None of a learner without modes."""
+    states: LearnedStates
 
 
 def read_memory(path: Path) -> Memory:
@@ -62,19 +58,7 @@ def read_memory(path: Path) -> Memory:
         log["t_err"],
         log["end_cause"] == completed,
     )
-    return Memory(figures, episodes, _states(session))
-
-
-def _states(session: LearningSession) -> StateMap | None:
-    memory = session.learner.memory()
-    if not {"fixed", "penalty_state"} <= memory.keys():
-        return None
-    radii = np.array(session.settings.inputs.radii)[_WAIST]
-    return StateMap(
-        memory["state_centers"][:, _WAIST] * radii,
-        memory["fixed"],
-        memory["penalty_state"],
-    )
+    return Memory(figures, episodes, learned_states(session))
 
 
 def figures_of(
@@ -123,10 +107,9 @@ def show_memory(page: Page, path: Path) -> None:
 
 
 def show_states(page: Page, memory: Memory, as_of: str) -> None:
-    """Show the states of a memory, if it has modes, and how old they are."""
-    if memory.states is not None:
-        episodes = memory.figures.episodes
-        page.show_map(memory.states, f"{as_of}, after {episodes:,} episodes.")
+    """Show the states of a memory, and how old they are."""
+    episodes = memory.figures.episodes
+    page.show_map(memory.states, f"{as_of}, after {episodes:,} episodes.")
 
 
 class MemoryFile:

@@ -78,18 +78,6 @@ class Episodes:
 
 
 @dataclass(frozen=True)
-class StateMap:
-    """The n states of a learner with modes, over the waist plane."""
-
-    waist_m: Array
-    """(n, 2) centres of their basis functions, from the support foot's ankle point."""
-    fixed: NDArray[np.bool_]
-    """(n,) in fixed mode."""
-    penalty: NDArray[np.bool_]
-    """(n,) penalty states."""
-
-
-@dataclass(frozen=True)
 class LearnerFigures:
     """How far a learner has come."""
 

@@ -26,12 +26,12 @@ from biped_view.live.moment import (
     Episodes,
     LearnerFigures,
     Moment,
-    StateMap,
     Traces,
 )
 from biped_view.live.plots import Plots
 from biped_view.robot_scene import RobotScene
 from biped_view.theme import DARK, LIGHT, Colour
+from learner_node.walking.waist_plane import LearnedStates
 
 HOST: Final = "127.0.0.1"
 FIRST_PORT: Final = 8080
@@ -99,7 +99,7 @@ class Page:
         self._traces: Callable[[], Traces] = lambda: NO_TRACES
         self._episodes: Episodes | None = None
         self._figures: LearnerFigures | None = None
-        self._map: tuple[StateMap, str] | None = None
+        self._map: tuple[LearnedStates, str] | None = None
         self._head: tuple[str, str, Colour] = ("Waiting", "", self._theme.soft)
         self._stale = {"moment", "plots", "cards"}
         self._plotted_at = self._paths_at = 0.0
@@ -160,7 +160,7 @@ class Page:
         self._figures = figures
         self._stale.add("cards")
 
-    def show_map(self, learned: StateMap, as_of: str) -> None:
+    def show_map(self, learned: LearnedStates, as_of: str) -> None:
         """Show the learner's states; `as_of` says how old they are."""
         self._map = learned, as_of
         self._stale.add("cards")

@@ -13,7 +13,8 @@ from biped_description.robot import Robot
 from biped_view.floor_scene import sole_corners
 from biped_view.live.moment import Course, Moment, Traces
 from biped_view.live.page import Page
-from biped_view.walk_record import WalkRecord
+from biped_view.phases import standing_feet
+from biped_view.walk_record import WalkRecord, last_known
 
 _SPEEDS: Final = {"¼": 0.25, "1": 1.0, "2": 2.0}
 _AHEAD_TICKS: Final = 60
@@ -91,8 +92,7 @@ class RecordSource:
     def _show(self, time_s: float) -> None:
         record, page = self._record, self._page
         tick = min(record.ticks - 1, round(time_s / _PERIOD_S))
-        before = int(np.searchsorted(self._rows, tick, side="right")) - 1
-        row = int(self._rows[max(0, before)])
+        row = int(last_known(self._rows, [tick])[0])
         page.show_moment(lambda: moment_at(record, row))
         page.show_traces(lambda: self._traces.until(seconds(tick + 1)))
         phase = "double support" if record.double_support[tick] else "single support"
@@ -106,9 +106,7 @@ class RecordSource:
 
 def moment_at(record: WalkRecord, row: int) -> Moment:
     """Return what is to be seen of a walk at a row of which all is known."""
-    feet = np.array([record.left_foot_m[row], record.right_foot_m[row]])
-    if not record.double_support[row]:
-        feet = feet[[int(record.right_support[row])]]
+    feet = np.array(standing_feet(record, row)).reshape(-1, 2)
     return Moment(
         torso_position_m=record.torso_position_m[row],
         torso_quaternion=record.torso_quaternion[row],

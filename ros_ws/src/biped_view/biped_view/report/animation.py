@@ -22,9 +22,9 @@ from PIL import Image, ImageDraw, ImageFont
 from biped_common.command_line import CommandError
 from biped_common.timing import CONTROL_PERIOD_US, seconds
 from biped_description.robot import Robot
+from biped_view.phases import phases, shown_rows, standing_feet
 from biped_view.report.end_sentence import end_sentence
 from biped_view.report.offscreen import Camera, OffscreenRobot
-from biped_view.report.phases import phases, shown_rows, standing_feet
 from biped_view.theme import LIGHT, Colour
 from biped_view.walk_record import LoadedWalk, WalkRecord
 from msgs_json.end_cause import EndCause

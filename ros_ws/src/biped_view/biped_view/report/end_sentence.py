@@ -10,7 +10,7 @@ from biped_bringup.run_settings import RunSettings
 from biped_common.timing import seconds
 from biped_description.joints import JOINT_NAMES
 from biped_description.robot import Robot
-from biped_view.report.phases import phase_in_words
+from biped_view.phases import phase_in_words
 from biped_view.walk_record import WalkRecord
 from msgs_json.end_cause import EndCause
 

@@ -9,8 +9,8 @@ from biped_common.settings import to_mapping
 from biped_common.timing import seconds
 from biped_description.joints import JOINT_NAMES
 from biped_description.robot import Robot
-from biped_view.report.learner_figures import learned_states
 from biped_view.walk_record import LoadedWalk, Rows, WalkRecord
+from learner_node.walking.waist_plane import learned_states
 
 
 def key_figures(walk: LoadedWalk) -> list[tuple[str, str]]:

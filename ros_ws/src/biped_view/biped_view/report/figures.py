@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from biped_view.report.learner_figures import (
     draw_learning_curve,
     draw_states,
-    learned_states,
 )
 from biped_view.report.walk_figures import (
     draw_cost,
@@ -22,6 +21,7 @@ from biped_view.report.walk_figures import (
 )
 from biped_view.walk_record import LoadedWalk
 from learner_node.walking.session import LearningSession
+from learner_node.walking.waist_plane import learned_states
 
 
 class ReportFigure(NamedTuple):

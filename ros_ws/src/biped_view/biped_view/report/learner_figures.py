@@ -2,53 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from biped_common.colours import BLUE, GREEN, GREY, SKY, VERMILLION
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_lab.report.theme import new_figure
 from learner_node.walking.episode_log import EpisodeLog
-from learner_node.walking.session import LearningSession
-from learner_node.walking.task import INPUT_NAMES, N_DISCRETE
+from learner_node.walking.waist_plane import LearnedStates
 from msgs_json.end_cause import EndCause
 
-_WAIST = [INPUT_NAMES.index(name) - N_DISCRETE for name in ("waist_x", "waist_y")]
 _COMPLETED = tuple(EndCause).index(EndCause.COMPLETED)
-
-
-class LearnedStates(NamedTuple):
-    """The states of a memory over the waist plane; n of them."""
-
-    waist_m: NDArray[np.float64]
-    """(n, 2) centres, relative to the support foot's ankle point."""
-    fixed: NDArray[np.bool_]
-    """(n,) no longer exploring."""
-    penalty: NDArray[np.bool_]
-    """(n,) all that is left to choose is penalised."""
-
-    @property
-    def modes(self) -> dict[str, NDArray[np.bool_]]:
-        """(n,) which states are in each mode, by its name."""
-        return {
-            "exploring": ~self.fixed & ~self.penalty,
-            "fixed": self.fixed & ~self.penalty,
-            "penalty": self.penalty,
-        }
-
-
-def learned_states(session: LearningSession) -> LearnedStates:
-    """Return the states of a learner; of one without modes all are exploring."""
-    memory = session.learner.memory()
-    radii = np.array(session.settings.inputs.radii)[_WAIST]
-    waist_m = memory["state_centers"][:, _WAIST] * radii
-    none = np.zeros(len(waist_m), dtype=np.bool_)
-    return LearnedStates(
-        waist_m, memory.get("fixed", none), memory.get("penalty_state", none)
-    )
 
 
 _STYLES: dict[str, dict[str, Any]] = {

@@ -17,7 +17,7 @@ import viser
 from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.robot import Robot
 from biped_view.floor_scene import FloorScene, sole_corners
-from biped_view.report.phases import shown_rows, standing_feet
+from biped_view.phases import shown_rows, standing_feet
 from biped_view.robot_scene import RobotScene
 from biped_view.theme import DARK, LIGHT, Theme
 from biped_view.walk_record import WalkRecord

@@ -14,7 +14,7 @@ from biped_common.timing import CONTROL_PERIOD_S, seconds
 from biped_description.joints import JOINTS_PER_LEG, LEG_JOINTS
 from biped_description.robot import Robot
 from biped_lab.report.theme import new_figure
-from biped_view.report.phases import phases, short_name, standing_feet
+from biped_view.phases import phases, short_name, standing_feet
 from biped_view.walk_record import Rows, WalkRecord
 from msgs_json.episode_result import CostTerms
 from sim_node.markers import support_polygon

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from biped_view.walk_record import WalkRecord
+from biped_view.walk_record import WalkRecord, last_known
 
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh",
              "eighth", "ninth", "tenth")  # fmt: skip
@@ -84,8 +84,7 @@ def shown_rows(record: WalkRecord, every_ticks: int) -> list[int]:
     if not len(rows):
         return []
     wanted = [*range(0, record.ticks - 1, every_ticks), record.ticks - 1]
-    before = np.searchsorted(rows, wanted, side="right") - 1
-    return [int(row) for row in rows[np.maximum(before, 0)]]
+    return [int(row) for row in last_known(rows, wanted)]
 
 
 def _leg(phase: Phase) -> str:
