@@ -11,6 +11,7 @@ from biped_lab.study import (
     load_study,
     study_names,
     study_of,
+    with_first_seeds,
 )
 
 SMALL: dict[str, Any] = {
@@ -107,6 +108,13 @@ def test_the_reduced_study_is_a_part_of_the_whole() -> None:
         ("K = 3", (7,)), ("none", (7,))
     ]  # fmt: skip
     assert less.file.most_episodes == 5 != whole.file.most_episodes
+
+
+def test_a_sitting_is_the_first_seeds_of_the_whole_and_is_found_again_by_it() -> None:
+    whole = study_of("small", SMALL | {"seeds": {"first": 7, "count": 3}})
+    sitting = list(with_first_seeds(whole, 2).specs())
+    assert sitting == list(whole.specs())[: len(sitting)]
+    assert {spec.seed for _, spec in sitting} == {7, 8}
 
 
 # -- studies that come with the laboratory ---------------------------------------------

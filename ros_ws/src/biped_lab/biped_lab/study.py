@@ -22,7 +22,7 @@ import hashlib
 import itertools
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -208,6 +208,17 @@ def load_study(name_or_file: str, *, reduced: bool = False) -> Study:
     return study_of(name, values, reduced=reduced)
 
 
+def with_first_seeds(study: Study, count: int) -> Study:
+    """Return a study with no more than its first seeds: one sitting's worth of it.
+
+    Args:
+        study: any.
+        count: how many seeds an arm has at most.
+    """
+    arms = tuple(replace(arm, seeds=arm.seeds[:count]) for arm in study.arms)
+    return replace(study, arms=arms)
+
+
 def study_of(name: str, values: Mapping[str, Any], *, reduced: bool = False) -> Study:
     """Return the study that a YAML file's content describes.
 
@@ -312,9 +323,7 @@ def _reduced(
     if unknown:
         raise StudyError(f"study {name}: reduced: no arm {sorted(unknown)[0]!r}")
     kept = tuple(
-        Arm(**{**vars(arm), "seeds": arm.seeds[: less.seeds]})
-        for arm in arms
-        if arm.name in names
+        replace(arm, seeds=arm.seeds[: less.seeds]) for arm in arms if arm.name in names
     )
     episodes = less.most_episodes or file.most_episodes
     return msgspec.structs.replace(file, most_episodes=episodes), kept
