@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from biped_common.verbs import entry_points
+from biped_common.entry_points import entry_points
 
 BIPED = "biped_bringup.cli.main"
 ROS2 = "ros2_verbs.main"

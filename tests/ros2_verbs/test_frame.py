@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import ros2_verbs
-from biped_common.verbs import entry_points
+from biped_common.entry_points import entry_points
 from ros2_verbs import doctor
 from ros2_verbs.doctor import hello
 from ros2_verbs.errors import VerbError

@@ -12,20 +12,12 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Callable, Sequence
-from importlib import metadata
 from importlib.metadata import EntryPoint
 from importlib.util import find_spec
 from typing import Any
 
 from biped_common.command_line import CommandError
-
-
-def entry_points(group: str) -> dict[str, EntryPoint]:
-    """Return the entry points of a group by name; as with modules, the first counts."""
-    found: dict[str, EntryPoint] = {}
-    for point in metadata.entry_points(group=group):
-        found.setdefault(point.name, point)
-    return found
+from biped_common.entry_points import entry_points
 
 
 def docstring_of(point: EntryPoint) -> str:

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import WalkedTicks
+from biped_common.entry_points import entry_points
 from biped_common.settings import Settings
-from biped_common.verbs import entry_points
 from learner_node.walking.episode_log import EpisodeLog
 from msgs_json.end_cause import EndCause
 

@@ -18,10 +18,11 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from biped_common.command_line import INTERRUPTED
+from biped_common.entry_points import entry_points
 from biped_common.errors import BipedError
 from biped_common.signals import loading
 from biped_common.terminal_text import printable_output
-from biped_common.verbs import docstring_of, entry_points, use_verbs
+from biped_common.verbs import docstring_of, use_verbs
 from ros2_verbs import real_ros2
 from ros2_verbs.environment import prepare_environment
 

@@ -19,7 +19,7 @@ from biped_bringup.supervisor.child import Child
 from biped_bringup.supervisor.graph_watch import NAME
 from biped_bringup.supervisor.restart_budget import RestartBudget
 from biped_common.command_line import WRONG_INPUT
-from biped_common.verbs import entry_points
+from biped_common.entry_points import entry_points
 
 _GROUP, _NODE = "biped.nodes", "biped_view/view"
 _HOST, _FIRST_PORT, _PORTS = "127.0.0.1", 8080, 100

@@ -30,8 +30,8 @@ from biped_bringup.supervisor.child import Child
 from biped_bringup.supervisor.graph_watch import FOXGLOVE, NAME, TF_NODE, GraphWatch
 from biped_bringup.supervisor.restart_budget import RestartBudget
 from biped_common.command_line import WRONG_INPUT
+from biped_common.entry_points import entry_points
 from biped_common.errors import BipedError
-from biped_common.verbs import entry_points
 from biped_ros.environment import LEASE_S
 from biped_ros.process import process_name
 from biped_ros.running import REFUSED

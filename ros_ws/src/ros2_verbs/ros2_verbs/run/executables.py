@@ -17,7 +17,7 @@ from ament_index_python.packages import (
     get_packages_with_prefixes,
 )
 
-from biped_common.verbs import entry_points
+from biped_common.entry_points import entry_points
 from ros2_verbs.errors import VerbError
 
 _GROUP = "biped.nodes"
