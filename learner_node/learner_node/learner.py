@@ -10,8 +10,8 @@ decision a learner is called in this order:
     finish_subtask()                 when a part of the task is mastered
     finish_episode()                 at the end; then begin_episode again
 
-Where something from outside ends an episode, `give_up_episode()` takes the place of the
-last three.
+Where something from outside ends an episode, `give_up_episode()` takes back all that it
+has led to.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from learner_node.memory import Arrays
 
 Inputs = NDArray[np.float64]
+Push = NDArray[np.float64]
 
 
 class Learner(Protocol):
@@ -43,17 +44,29 @@ class Learner(Protocol):
     def advance(self, inputs: Inputs) -> None:
         """Take the (Ns,) inputs of the next decision."""
 
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Take a reward for what was chosen.
 
         Args:
             value: rwd.
             counts: it is a success, by which states come nearer to being fixed.
             whole_task: it was earned on the whole task, not on a part of it.
+            unproved: that many of the last decisions have yet to show what they lead
+                to; the reward is not for them.
         """
 
-    def penalise(self, penalty: int) -> None:
-        """Take penalty p_l, 0-based, for what was chosen."""
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
+        """Take penalty p_l, 0-based, for what was chosen.
+
+        Args:
+            penalty: its type.
+            push: (ages, Nm) how far the next higher alternative of a component, instead
+                of the one chosen so many decisions ago, would have moved the task
+                towards this failure, in any unit; None where that is not known. The
+                last decision has age 0.
+        """
 
     def finish_subtask(self) -> None:
         """Take note that a part of the task is mastered."""
@@ -62,10 +75,7 @@ class Learner(Protocol):
         """End the episode."""
 
     def give_up_episode(self) -> None:
-        """Become what it was before `begin_episode`, but for its `rng`.
-
-        Not after `finish_subtask`: then the episode has led somewhere.
-        """
+        """Become what it was before `begin_episode`, but for its `rng`."""
 
     def greedy(self, inputs: Inputs) -> NDArray[np.int64] | None:
         """Return the best known action, None where nothing is known; learn nothing.
@@ -95,8 +105,12 @@ class Outcome:
     counts: bool = False
     """The reward is a success; see `Learner.reward`."""
     whole_task: bool = True
+    unproved: int = 0
+    """Decisions that the reward is not for; see `Learner.reward`."""
     penalty: int | None = None
     """0-based type; comes before a reward, if there are both."""
+    push: Push | None = None
+    """What led to the penalty; see `Learner.penalise`."""
     subtask_finished: bool = False
     ended: bool = False
     """The episode is over."""
@@ -109,9 +123,11 @@ GOING_ON = Outcome()
 def tell(learner: Learner, outcome: Outcome) -> None:
     """Tell a learner what its last action led to."""
     if outcome.penalty is not None:
-        learner.penalise(outcome.penalty)
+        learner.penalise(outcome.penalty, outcome.push)
     if outcome.reward is not None:
-        learner.reward(outcome.reward, outcome.counts, outcome.whole_task)
+        learner.reward(
+            outcome.reward, outcome.counts, outcome.whole_task, outcome.unproved
+        )
     if outcome.subtask_finished:
         learner.finish_subtask()
     if outcome.ended:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from biped_common.settings import Settings, setting
 from learner_node.journal import RowJournal
+from learner_node.learner import Push
 from learner_node.memory import Arrays, check_memory, count_of_states
 from learner_node.problem import Problem
 from learner_node.states import NO_STATE, BasisStates, StateSettings, doubled
@@ -111,11 +112,13 @@ class QLambda:
         self._learn(self.settings.discount * value)
         self.state = following
 
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Earn rwd; successes are not counted here."""
         self._earned = (self._earned or 0.0) + value
 
-    def penalise(self, penalty: int) -> None:
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
         """Earn -pnlty."""
         self.problem.check_penalty(penalty)
         self._earned = (self._earned or 0.0) - self.problem.penalty_values[penalty]

@@ -134,6 +134,9 @@ class NaiveXol:
 
     def choose(self):
         state = self.state
+        if state in self.kept:
+            self.put_in_queue(state, self.kept[state])
+            return self.action_of(self.kept[state])
         draws = self.rng.random(self.components)
         chosen = []
         for i in range(self.components):
@@ -153,6 +156,14 @@ class NaiveXol:
                 state.selections[i][j] += 1
         if self.is_penalty_state(state):
             state.fixed = False
+        every = range(len(self.penalty_values))
+        allowed = self.is_penalty_state(state) or not any(
+            self.is_penalty_subrule(state, p, i, j)
+            for p in every
+            for i, j in enumerate(chosen)
+        )
+        if allowed and self.settings.redraw == "episode":
+            self.kept[state] = chosen
         self.put_in_queue(state, chosen)
         return self.action_of(chosen)
 
@@ -242,6 +253,7 @@ class NaiveXol:
 
     def begin_episode(self, inputs):
         self.empty_queue()
+        self.kept = {}
         for state in self.states:
             state.selected.clear()
             state.failed.clear()
@@ -262,38 +274,50 @@ class NaiveXol:
                     state.E[i][j] *= self.settings.discount
         self.state = following
 
-    def reward(self, value, counts, whole_task=True):
+    def reward(self, value, counts, whole_task=True, unproved=0):
         self.failures_in_a_row = 0
-        for decision in self.queue:
+        proved = self.queue[: max(0, len(self.queue) - unproved)]
+        for decision in proved:
             if not decision.state.fixed:
                 for i, j in enumerate(decision.chosen):
                     if not decision.discarded[i]:
                         decision.state.Q[i][j] += value * decision.state.E[i][j]
         if counts:
             mode = self.settings.fixed_mode
+            if mode.fixes == "rewarded":
+                last = {decision.state: decision for decision in proved}
+                for state, decision in last.items():
+                    for i, j in enumerate(decision.chosen):
+                        if not state.fixed and state.Q[i][j] < max(state.Q[i]):
+                            state.Q[i][j] = max(state.Q[i]) + value
             every = mode.counted == "queue_then_episode" and whole_task
             if every or mode.counted == "episode":
                 visited = [state for state in self.states if state.selected]
             else:
-                visited = self.last_states(len(self.queue))
+                visited = list(dict.fromkeys(d.state for d in proved))
             for state in visited:
                 state.TUC += 1
                 enough = mode.rewards_to_fix <= state.TUC
                 if mode.strategy == "strategy1" and enough:
                     state.fixed = not self.is_penalty_state(state)
 
-    def penalise(self, penalty):
+    def penalise(self, penalty, push=None):
         self.failures_in_a_row += 1
         settings = self.settings
-        blamed = self.last_states(settings.failure_reach)
+        reach = settings.failure_reach if push is None else len(push)
+        blamed = self.last_states(reach)
         known = {state for state in self.states if self.is_penalty_state(state)}
         for decision in self.last_decisions(settings.penalty_reach):
             self.raise_P(decision, penalty)
-        for decision in self.last_decisions(settings.failure_reach):
-            self.count_failure(decision, penalty)
+        if push is None:
+            for decision in self.last_decisions(settings.failure_reach):
+                self.count_failure(decision, penalty)
+        else:
+            self.direct_blame(penalty, push)
         self.release()
         new = {s for s in blamed if self.is_penalty_state(s) and s not in known}
         for state in blamed:
+            self.kept.pop(state, None)
             if self.is_penalty_state(state):
                 state.fixed = False
         # PRD: back along the queue, from each decision to the one that led to it.
@@ -304,6 +328,32 @@ class NaiveXol:
                 self.pay_for_transition(decision)
                 if self.is_penalty_state(decision.state) and not before:
                     new.add(decision.state)
+
+    def direct_blame(self, penalty, push):
+        """All alternatives are tried, and those no milder than what failed fail."""
+        pushed, chose = {}, {}
+        for age, decision in enumerate(self.last_decisions(len(push))):
+            for i, effect in enumerate(push[age]):
+                key = decision.state, i
+                pushed[key] = pushed.get(key, 0.0) + effect
+                chose.setdefault(key, []).append(decision.chosen[i])
+        strongest = max(map(abs, pushed.values()), default=0.0)
+        for (state, i), effect in pushed.items():
+            if effect == 0.0 or abs(effect) < self.settings.blame_share * strongest:
+                continue
+            for j in range(self.sizes[i]):
+                if (i, j) not in state.selected:
+                    state.selected.add((i, j))
+                    if 0 < self.settings.selection_memory <= state.selections[i][j]:
+                        state.selections[i][j] //= 2
+                        for failures in state.failures:
+                            failures[i][j] //= 2
+                    state.selections[i][j] += 1
+                mildest = min(chose[state, i]) if effect > 0 else max(chose[state, i])
+                fails = (j >= mildest) if effect > 0 else (j <= mildest)
+                if fails and (penalty, i, j) not in state.failed:
+                    state.failed.add((penalty, i, j))
+                    state.failures[penalty][i][j] += 1
 
     def release(self):
         mode = self.settings.fixed_mode
@@ -323,6 +373,7 @@ class NaiveXol:
         additional = len(self.penalty_values) - 1
         self.raise_P(decision, additional)
         self.count_failure(decision, additional)
+        self.kept.pop(decision.state, None)
         if self.is_penalty_state(decision.state):
             decision.state.fixed = False
 

@@ -15,6 +15,7 @@ import numpy as np
 from numba import float64, int64, njit
 from numpy.typing import NDArray
 
+from biped_common.bspline import uniform_bspline
 from biped_common.timing import (
     CONTROL_PERIOD_S,
     LEARNING_PERIOD_S,
@@ -23,22 +24,6 @@ from biped_common.timing import (
 from trajectory_node.settings import CorrectionSettings
 
 _COMPONENTS = 2
-
-
-def uniform_bspline(u: NDArray[np.floating[Any]], order: int) -> NDArray[np.float64]:
-    """Return the uniform B-spline B(u) of the given order, support [0, order].
-
-    Args:
-        u: any shape, time in knot spacings.
-        order: degree + 1; 3 is quadratic, 4 cubic.
-    """
-    # Cardinal B-spline as a sum of truncated powers.
-    degree = order - 1
-    total = np.zeros_like(u, dtype=np.float64)
-    for i in range(order + 1):
-        weight = (-1) ** i * math.comb(order, i) / math.factorial(degree)
-        total += weight * np.maximum(u - i, 0.0) ** degree
-    return np.where((u > 0.0) & (u < order), total, 0.0)
 
 
 @njit(

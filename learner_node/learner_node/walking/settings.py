@@ -79,6 +79,28 @@ class CostSettings(Settings):
 
 
 @dataclass(frozen=True)
+class BlameSettings(Settings):
+    """What a failure by the ZMP tells (beyond the paper)."""
+
+    directed: bool = setting(
+        False,
+        "",
+        "true: alternatives are blamed by how they push the ZMP; false: all of the "
+        "last decisions are",
+    )
+    knot_spacing_s: float = setting(
+        0.4, "s", "h of the correction's B-spline", above=0.0, upper=5.0
+    )
+    order: int = setting(3, "", "order of the correction's B-spline", lower=3, upper=4)
+    zmp_per_position: float = setting(
+        0.83, "m/m", "how far the ZMP moves with the waist"
+    )
+    zmp_per_acceleration_s2: float = setting(
+        -0.051, "s^2", "how far the ZMP moves with the waist's acceleration"
+    )
+
+
+@dataclass(frozen=True)
 class RewardSettings(Settings):
     """Rewards (Table 2) and penalties (Table 1)."""
 
@@ -100,6 +122,19 @@ class ScheduleSettings(Settings):
     extension_s: float = setting(
         0.9375, "s", "how much later the next subtask ends (T_step / 2)", lower=0.02
     )
+    run_on: bool = setting(
+        False,
+        "",
+        "a walk that masters its subtask goes on to the next one's target at once "
+        "(beyond the paper)",
+    )
+    proof_s: float = setting(
+        0.6,
+        "s",
+        "what was decided so shortly before a walk runs on is not rewarded yet",
+        lower=0.0,
+        upper=100.0,
+    )
 
 
 @dataclass(frozen=True)
@@ -109,11 +144,20 @@ class LearnerSettings(MethodSettings):
     action: ActionSettings = section(ActionSettings)
     inputs: InputSettings = section(InputSettings)
     cost: CostSettings = section(CostSettings)
+    blame: BlameSettings = section(BlameSettings)
     rewards: RewardSettings = section(RewardSettings)
     schedule: ScheduleSettings = section(ScheduleSettings)
 
     def check_together(self) -> None:
-        """Refuse tables of joint rules that take all memory: Na^2 of them a state."""
+        """Refuse what joint rules cannot do.
+
+        Their tables would take all memory, Na^2 of them a state, and they have no order
+        by which blame could be directed.
+        """
+        if self.blame.directed and not self.xol.decomposed:
+            raise SettingsError(
+                "blame.directed", True, "must be false where xol.decomposed is"
+            )
         if not self.xol.decomposed and self.action.alternatives > _MOST_JOINT:
             raise SettingsError(
                 "action.alternatives",

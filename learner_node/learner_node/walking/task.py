@@ -16,10 +16,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from biped_common.timing import TICKS_PER_LEARNING_TICK
+from biped_common.timing import (
+    LEARNING_PERIOD_US,
+    TICKS_PER_LEARNING_TICK,
+    microseconds,
+)
 from learner_node.learner import Outcome
 from learner_node.problem import ActionSpace, Problem
 from learner_node.walking.cost import CostEstimate, CostIntegral
+from learner_node.walking.response import zmp_response
 from learner_node.walking.schedule import LearningSchedule
 from learner_node.walking.settings import LearnerSettings
 from msgs_json.end_cause import EndCause
@@ -77,7 +82,10 @@ def sensory_input(observation: Observation) -> NDArray[np.float64]:
 
 
 class End(NamedTuple):
-    """How a walk ended: for the learner, and for everybody else."""
+    """How a walk ended: for the learner, and for everybody else.
+
+    Where the outcome says that it has not ended, it goes on to the next target.
+    """
 
     outcome: Outcome
     result: EpisodeResult
@@ -108,13 +116,30 @@ class WalkTask:
             -action.limit_m, action.limit_m, action.alternatives
         )
         self._hold_control_ticks = action.hold_ticks * TICKS_PER_LEARNING_TICK
+        self._unproved = -(
+            -microseconds(settings.schedule.proof_s)
+            // (action.hold_ticks * LEARNING_PERIOD_US)
+        )
+        step_m = float(self._alternatives_m[1] - self._alternatives_m[0])
+        self._push = step_m * zmp_response(settings.blame, action.hold_ticks)
+        self.begin()
 
     def begin(self) -> None:
         """Begin a walk."""
         self._cost.reset()
+        self._earned = 0.0
+        self._before = self.progress()
+
+    def give_up(self) -> None:
+        """Take back what the walk under way has led to."""
+        self.restore(self._before)
 
     def end(self, observation: Observation) -> End | None:
-        """Take an observation into account; return how the walk ended, if it has."""
+        """Take an observation into account; return how the walk ended, if it has.
+
+        With `schedule.run_on`, a walk that masters a subtask other than the last has
+        an end there, too, whose outcome says that it goes on.
+        """
         self._cost.add(observation)
         if observation.end_cause is not None:
             return self._failed(observation, observation.end_cause)
@@ -132,16 +157,31 @@ class WalkTask:
 
     def _failed(self, observation: Observation, cause: EndCause) -> End:
         return End(
-            Outcome(penalty=PENALTY_OF.get(cause), ended=True),
+            Outcome(
+                penalty=PENALTY_OF.get(cause),
+                push=self._push_of(observation, cause),
+                ended=True,
+            ),
             self._cost.result(
                 observation,
                 cause,
                 self.schedule.target_ticks,
                 learning=True,
+                reward=self._earned,
                 subtask=self.schedule.subtask,
                 schedule_complete=self.schedule.complete,
             ),
         )
+
+    def _push_of(
+        self, observation: Observation, cause: EndCause
+    ) -> NDArray[np.float64] | None:
+        """Return what led to a failure (`Learner.penalise`), if that is known [m]."""
+        if not self.settings.blame.directed or cause is not EndCause.ZMP_ERROR:
+            return None
+        error_m = np.array(observation.zmp_error_m)
+        size_m = float(np.hypot(*error_m))
+        return None if size_m == 0.0 else np.outer(self._push, error_m / size_m)
 
     def _completed(self, observation: Observation) -> End:
         """Pay the reward of Table 2 and move on in the schedule."""
@@ -162,13 +202,16 @@ class WalkTask:
         if finished and not schedule.complete:
             # T_err grows with t_f: each subtask has its own estimate.
             estimate.value = None
+        goes_on = self.settings.schedule.run_on and finished and not schedule.complete
+        self._earned += reward
         return End(
             Outcome(
                 reward=reward,
                 counts=success,
                 whole_task=whole_task,
+                unproved=self._unproved if goes_on else 0,
                 subtask_finished=finished,
-                ended=True,
+                ended=not goes_on,
             ),
             self._cost.result(
                 observation,
@@ -176,7 +219,7 @@ class WalkTask:
                 target_ticks,
                 learning=True,
                 compared_with=compared_with,
-                reward=reward,
+                reward=self._earned,
                 subtask=subtask,
                 schedule_complete=schedule.complete,
             ),

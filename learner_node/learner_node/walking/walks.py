@@ -49,10 +49,11 @@ class LearningWalk:
         if end is not None:
             if end.result.end_cause.from_outside:
                 self.give_up()
-            else:
-                tell(learner, end.outcome)
+                return end.result
+            tell(learner, end.outcome)
+            if end.outcome.ended:
                 self._chance = None
-            return end.result
+                return end.result
         if task.decides(observation):
             inputs = sensory_input(observation)
             if begins:
@@ -68,6 +69,7 @@ class LearningWalk:
         if self._chance is not None:
             self._learner.give_up_episode()
             self._learner.rng.bit_generator.state = self._chance
+            self._task.give_up()
             self._chance = None
 
 

@@ -22,10 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learner_node.journal import RowJournal
+from learner_node.learner import Push
 from learner_node.memory import Arrays, check_memory, count_of_states
 from learner_node.problem import Problem
 from learner_node.states import NO_STATE, BasisStates, StateSettings
-from learner_node.xol import penalties, selection
+from learner_node.xol import blame, penalties, selection
 from learner_node.xol.queue import DecisionQueue
 from learner_node.xol.rules import RuleTable
 from learner_node.xol.settings import XolSettings
@@ -62,6 +63,8 @@ class XolAgent:
         self.failures_in_a_row = 0
         self.state = NO_STATE
         self._chosen = np.zeros(self.rules.space.table_shape[0], dtype=np.int64)
+        self._kept: dict[int, NDArray[np.int64]] = {}
+        """What states keep to in this episode, where they draw once in it."""
         self._journal = RowJournal()
         self._failures_before = 0
         """Failures in a row when the episode began."""
@@ -75,6 +78,7 @@ class XolAgent:
         self.states.mark()
         self._journal.begin()
         self.queue.clear()
+        self._kept.clear()
         self.state = self._locate(inputs)
 
     def choose(self) -> NDArray[np.int64]:
@@ -85,6 +89,9 @@ class XolAgent:
         """
         k = self.state
         rules = self.rules
+        if k in self._kept:
+            self.queue.push(k, self._kept[k])
+            return rules.space.alternatives_of(self._kept[k])
         draws = self.rng.random(len(self._chosen))
         if rules.penalty_state[k]:
             selection.choose_ranked(
@@ -115,6 +122,8 @@ class XolAgent:
         ):
             self._judge(k)
         self.queue.push(k, self._chosen)
+        if self.settings.redraw == "episode":
+            self._keep(k)
         return rules.space.alternatives_of(self._chosen)
 
     def advance(self, inputs: NDArray[np.float64]) -> None:
@@ -129,18 +138,22 @@ class XolAgent:
         self.queue.decay(self.settings.discount)
         self.state = following
 
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Reinforce every sub-rule in the queue (2(c)v) and fix states (Strategy 1).
 
         Args:
             value: rwd.
             counts: the reward raises TUC, once per state.
             whole_task: it was earned on the whole task, not on a part of it.
+            unproved: the last so many decisions are passed over.
         """
         self.failures_in_a_row = 0
         rules = self.rules
         queue = self.queue
-        newest_first = (queue.head - 1 - np.arange(queue.filled)) % queue.length
+        ages = np.arange(unproved, queue.filled)
+        newest_first = (queue.head - 1 - ages) % queue.length
         states = queue.states[newest_first]
         alternatives = queue.alternatives[newest_first]
         payable = queue.live[newest_first] & ~rules.fixed[states, None]
@@ -150,6 +163,8 @@ class XolAgent:
             rules.q[k, i, j] += value * queue.eligibility[k, i, j]
         if counts:
             mode = self.settings.fixed_mode
+            if mode.fixes == "rewarded":
+                self._prefer_rewarded(value, states, alternatives)
             if mode.counted == "episode" or (
                 mode.counted == "queue_then_episode" and whole_task
             ):
@@ -162,15 +177,22 @@ class XolAgent:
                 enough = rules.rewards[visited] >= mode.rewards_to_fix
                 self._fix(visited[enough])
 
-    def penalise(self, penalty: int) -> None:
-        """Apply p_l (0-based l < Np - 1) and the penalty rule decision (2(c)vi)."""
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
+        """Apply p_l (0-based l < Np - 1) and the penalty rule decision (2(c)vi).
+
+        Where the `push` is known, blame is directed (`blame.py`) instead of put on all
+        of the last decisions.
+        """
         self.problem.check_penalty(penalty)
         self.failures_in_a_row += 1
-        self._pay_penalty(
-            penalty, 0, self.settings.penalty_reach, self.settings.failure_reach
-        )
+        reach = self.settings.failure_reach
+        if push is None:
+            self._pay_penalty(penalty, 0, self.settings.penalty_reach, reach)
+        else:
+            self._pay_penalty(penalty, 0, self.settings.penalty_reach, 0)
+            reach = self._direct_blame(penalty, push)
         self._release_fixed_states()
-        self._propagate_penalty_states()
+        self._propagate_penalty_states(reach)
 
     def finish_episode(self) -> None:
         """Let the basis functions age; unrewarded, unvisited ones are forgotten.
@@ -197,7 +219,10 @@ class XolAgent:
         """Fix every rewarded state that is no penalty state (Strategy 2, 2(c)viii)."""
         if self.settings.fixed_mode.strategy == "strategy2":
             count = self.states.count
-            self._fix(np.flatnonzero(self.rules.rewards[:count] > 0))
+            rewarded = np.flatnonzero(self.rules.rewards[:count] > 0)
+            for k in rewarded.tolist():  # the episode may yet be given up
+                self._journal.visit(k, self.rules.tables())
+            self._fix(rewarded)
 
     # -- greedy use --------------------------------------------------------------
 
@@ -302,6 +327,63 @@ class XolAgent:
             rules.last_failure,
         )
 
+    def _keep(self, k: int) -> None:
+        """Let state k keep to what it chose.
+
+        In normal mode no penalty sub-rule is kept: the choice may just have become one.
+        """
+        rules = self.rules
+        avoided = rules.avoided[k, np.arange(len(self._chosen)), self._chosen]
+        if rules.penalty_state[k] or (avoided == rules.n_penalties).all():
+            self._kept[k] = self._chosen.copy()
+
+    def _prefer_rewarded(
+        self, value: float, states: NDArray[np.int64], alternatives: NDArray[np.int64]
+    ) -> None:
+        """Raise what normal states did last to their largest Q.
+
+        Without it, a success by chance fixes them to something else, which was rewarded
+        more often with other states behind it: the walk is not repeated.
+
+        Args:
+            value: rwd.
+            states: (n,) rewarded, newest decision first.
+            alternatives: (n, I) that they chose.
+        """
+        rules = self.rules
+        k, newest = np.unique(states, return_index=True)
+        k, newest = k[~rules.fixed[k]], newest[~rules.fixed[k]]
+        for i in range(alternatives.shape[1]):
+            j = alternatives[newest, i]
+            best = rules.q[k, i].max(axis=1)
+            behind = rules.q[k, i, j] < best
+            rules.q[k[behind], i, j[behind]] = best[behind] + value
+
+    def _direct_blame(self, penalty: int, push: Push) -> int:
+        """Count a failure for what pushed to it; return how many decisions could."""
+        queue, rules = self.queue, self.rules
+        reach = min(len(push), queue.filled)
+        newest_first = (queue.head - 1 - np.arange(reach)) % queue.length
+        for k, i, no_better in blame.directed(
+            push[:reach],
+            queue.states[newest_first],
+            queue.alternatives[newest_first],
+            rules.sizes,
+            self.settings.blame_share,
+        ):
+            n = rules.sizes[i]
+            blame.count_trials(
+                rules.selections[k, i, :n],
+                rules.last_episode[k, i, :n],
+                rules.failures[k, :, i, :n],
+                self.episode,
+                self.settings.selection_memory,
+            )
+            fails = no_better & (rules.last_failure[k, penalty, i, :n] != self.episode)
+            rules.failures[k, penalty, i, :n][fails] += 1
+            rules.last_failure[k, penalty, i, :n][fails] = self.episode
+        return reach
+
     def _penalise_transition(self, age: int) -> None:
         """Pay p_Np to the decision of this age, which led to a penalty state."""
         self._pay_penalty(self.rules.n_penalties - 1, age, 1, 1)
@@ -322,20 +404,17 @@ class XolAgent:
         )
         if rules.penalty_state[k]:
             rules.fixed[k] = False
+        self._kept.pop(k, None)  # it may be a penalty sub-rule now
         return bool(rules.penalty_state[k]) and not before
 
-    def _propagate_penalty_states(self) -> None:
+    def _propagate_penalty_states(self, reach: int) -> None:
         """Penalty rule decision (PRD): follow new penalty states back in the queue.
 
         A rule that leads to a new penalty state is penalised with p_Np, which can
         make its own state a penalty state, and so on. A state that only leads to
         itself is passed over.
         """
-        new = {
-            k
-            for k in self._states_of_ages(self.settings.failure_reach)
-            if self._judge(k)
-        }
+        new = {k for k in self._states_of_ages(reach) if self._judge(k)}
         for age in range(self.queue.filled - 1):
             k, origin = self._state_of_age(age), self._state_of_age(age + 1)
             if k in new and origin != k:

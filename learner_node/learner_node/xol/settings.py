@@ -20,6 +20,13 @@ class FixedModeSettings(Settings):
     rewards_to_fix: int = setting(
         15, "rewards", "K of Strategy 1: rewards after which a state is fixed", lower=1
     )
+    fixes: str = setting(
+        "best",
+        "",
+        "what a fixed state does: the best that it knows, or what it did when it was "
+        "last rewarded (beyond the paper)",
+        choices=("best", "rewarded"),
+    )
     counted: str = setting(
         "queue_then_episode",
         "",
@@ -90,6 +97,20 @@ class XolSettings(Settings):
     )
     decomposed: bool = setting(
         True, "", "sub-rules per component (Section 3.4) instead of joint rules"
+    )
+    redraw: str = setting(
+        "decision",
+        "",
+        "a state in normal mode draws at every decision, or once an episode (beyond "
+        "the paper)",
+        choices=("decision", "episode"),
+    )
+    blame_share: float = setting(
+        0.1,
+        "",
+        "where blame is directed: the least share of the strongest push that is judged",
+        lower=0.0,
+        upper=1.0,
     )
     fixed_mode: FixedModeSettings = section(FixedModeSettings)
 

@@ -59,7 +59,10 @@ def cases(draw):
         failure_threshold=draw(st.sampled_from((0.0, 0.3, 0.5, 1.0))),
         base_weight=draw(st.sampled_from((0.5, 100.0))),
         decomposed=decomposed,
+        redraw=draw(st.sampled_from(("decision", "episode"))),
+        blame_share=draw(st.sampled_from((0.0, 0.5))),
         fixed_mode=FixedModeSettings(
+            fixes=draw(st.sampled_from(("best", "rewarded"))),
             strategy=draw(st.sampled_from(("strategy1", "strategy2", "none"))),
             rewards_to_fix=draw(st.integers(1, 3)),
             counted=draw(st.sampled_from(("queue", "episode", "queue_then_episode"))),
@@ -83,6 +86,13 @@ def cases(draw):
     return Case(settings, states, problem, seed=draw(st.integers(0, 2**16)))
 
 
+def pushes(components):
+    """Push by age and component, of sums that are exact."""
+    effects = st.sampled_from((-2.0, -1.0, 0.0, 0.5, 1.0))
+    rows = st.lists(effects, min_size=components, max_size=components)
+    return st.lists(rows, min_size=1, max_size=6).map(np.array)
+
+
 @st.composite
 def runs(draw, max_episodes=12, max_steps=8):
     """A case and the calls of some episodes."""
@@ -96,11 +106,21 @@ def runs(draw, max_episodes=12, max_steps=8):
     ends = st.one_of(
         st.tuples(
             st.just("reward"),
-            st.tuples(st.sampled_from(REWARDS), st.booleans(), st.booleans()),
+            st.tuples(
+                st.sampled_from(REWARDS),
+                st.booleans(),
+                st.booleans(),
+                st.sampled_from((0, 0, 1, 3)),
+            ),
         ),
         st.tuples(
             st.just("penalise"),
-            st.tuples(st.integers(0, len(problem.penalty_values) - 2)),
+            st.tuples(
+                st.integers(0, len(problem.penalty_values) - 2),
+                st.none() | pushes(len(case.problem.space.alternatives))
+                if case.settings.decomposed
+                else st.none(),
+            ),
         ),
     )
     calls = []

@@ -24,7 +24,7 @@ from learner_node.walking.settings import LearnerSettings
 from sim_node.settings import SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 
-PRESETS = ("paper", "coarse", "quick", "literal")
+PRESETS = ("paper", "coarse", "quick", "literal", "directed", "t_ds_090")
 DEFAULT_PRESET = "paper"
 
 
@@ -47,6 +47,16 @@ class RunSettings(Settings):
                 first,
                 f"must be at most the walk's {self.gait.duration_s:g} s",
             )
+        blame = self.learner.blame
+        if blame.directed:
+            for key in ("knot_spacing_s", "order"):
+                known, there = getattr(blame, key), getattr(self.correction, key)
+                if known != there:
+                    raise SettingsError(
+                        f"learner.blame.{key}",
+                        known,
+                        f"must be correction.{key} = {there:g} where blame is directed",
+                    )
 
 
 def preset_text(name: str) -> str:

@@ -79,10 +79,11 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
         run = load_settings(preset)
         if settings is not None:
             run = from_mapping(type(run), overlay(to_mapping(run), settings))
-        learner = run.learner
+        # An episode of an environment ends where it has succeeded.
+        plan = replace(run.learner.schedule, run_on=False)
         if not schedule:
-            whole = replace(learner.schedule, first_target_s=run.gait.duration_s)
-            learner = replace(learner, schedule=whole)
+            plan = replace(plan, first_target_s=run.gait.duration_s)
+        learner = replace(run.learner, schedule=plan)
         self.settings = run
         self.render_mode = render_mode
         self._rng = np.random.default_rng(0)

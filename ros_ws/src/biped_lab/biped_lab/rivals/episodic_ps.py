@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from biped_common.settings import Settings, setting
 from biped_lab.learner_contestant import learner_entry
 from biped_lab.rivals.tabular import TabularLearner
+from learner_node.learner import Push
 from learner_node.problem import Problem
 from learner_node.states import StateSettings
 
@@ -66,7 +67,9 @@ class EpisodicProfitSharing(TabularLearner):
         self.series.append((self.state, chosen))
         return self.problem.space.alternatives_of(chosen)
 
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Share the reward among all decisions since the last one."""
         share = value
         for k, chosen in reversed(self.series):
@@ -74,7 +77,7 @@ class EpisodicProfitSharing(TabularLearner):
             share *= self.discount
         self.series.clear()
 
-    def penalise(self, penalty: int) -> None:
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
         """Share nothing: the series has led to a failure."""
         super().penalise(penalty)
         self.series.clear()

@@ -76,7 +76,9 @@ class OnlineProfitSharing(TabularLearner):
         super().advance(inputs)
         self.queue.decay(self.settings.discount)
 
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Share the reward by eligibility, which is zero outside of the queue."""
         queued = np.unique(self.queue.states[: self.queue.filled])
         self.q[queued] += value * self.queue.eligibility[queued]

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from biped_common.settings import setting
 from biped_lab.learner_contestant import learner_entry
 from biped_lab.rivals.episodic_ps import EpisodicProfitSharing, EpisodicSettings
+from learner_node.learner import Push
 from learner_node.memory import Arrays, count_of_states
 from learner_node.problem import Problem
 from learner_node.states import StateSettings
@@ -108,7 +109,7 @@ class Parp(EpisodicProfitSharing):
             self._new_transitions |= seen - self.transitions
             self.transitions |= seen
 
-    def penalise(self, penalty: int) -> None:
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
         """Mark what has failed."""
         for k, chosen in self.series[-self.blamed_decisions :]:
             self.failed[k, self.components, chosen] = True

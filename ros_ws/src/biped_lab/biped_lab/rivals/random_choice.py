@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from biped_lab.contestant import NoOptions
 from biped_lab.learner_contestant import learner_entry
+from learner_node.learner import Push
 from learner_node.memory import Arrays, check_memory
 from learner_node.problem import Problem
 
@@ -39,10 +40,12 @@ class RandomChoice:
     def advance(self, inputs: NDArray[np.float64]) -> None:
         """Look nowhere."""
 
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Learn nothing."""
 
-    def penalise(self, penalty: int) -> None:
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
         """Learn nothing."""
         self.problem.check_penalty(penalty)
 

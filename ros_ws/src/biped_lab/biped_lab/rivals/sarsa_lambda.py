@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from biped_lab.learner_contestant import learner_entry
 from biped_lab.rivals.tabular import TabularLearner
+from learner_node.learner import Push
 from learner_node.problem import Problem
 from learner_node.q_lambda import QLambdaSettings
 from learner_node.states import StateSettings, doubled
@@ -76,11 +77,13 @@ class SarsaLambda(TabularLearner):
         self._last = (k, chosen)
         return self.problem.space.alternatives_of(chosen)
 
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Earn rwd."""
         self._earned = (self._earned or 0.0) + value
 
-    def penalise(self, penalty: int) -> None:
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
         """Earn -pnlty."""
         super().penalise(penalty)
         self._earned = (self._earned or 0.0) - self.problem.penalty_values[penalty]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learner_node.journal import RowJournal
+from learner_node.learner import Push
 from learner_node.memory import Arrays, check_memory, count_of_states
 from learner_node.problem import Problem
 from learner_node.states import NO_STATE, BasisStates, StateSettings, doubled
@@ -76,10 +77,12 @@ class TabularLearner(ABC):
         self.state = self._locate(inputs)
 
     @abstractmethod
-    def reward(self, value: float, counts: bool, whole_task: bool = True) -> None:
+    def reward(
+        self, value: float, counts: bool, whole_task: bool = True, unproved: int = 0
+    ) -> None:
         """Take a reward for what was chosen."""
 
-    def penalise(self, penalty: int) -> None:
+    def penalise(self, penalty: int, push: Push | None = None) -> None:
         """Take no notice."""
         self.problem.check_penalty(penalty)
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
-from trajectory_node.bspline import uniform_bspline
+from biped_common.bspline import uniform_bspline
 
 ORDERS = pytest.mark.parametrize("order", [3, 4])
 
