@@ -96,6 +96,14 @@ def test_a_schedule_begins_with_a_short_walk(make):
     assert len(scheduled.schedule.targets) == 11
 
 
+def test_an_episode_ends_where_it_has_succeeded(make):
+    env = make(preset="directed", schedule=True)
+    _, step = walk(env)
+    assert (step[1], step[2]) == (10_000.0, True)
+    assert step[4]["walked_s"] == 0.94
+    assert step[4]["outcome"].ended
+
+
 def test_a_wrong_setting_is_refused_by_name(make):
     with pytest.raises(SettingsError, match=r"gait\.steps = 0: must be between"):
         make(settings={"gait": {"steps": 0}})

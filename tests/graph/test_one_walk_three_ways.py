@@ -15,10 +15,14 @@ EPISODES = 20
 TIMEOUT_S = 90.0
 
 
-@pytest.fixture(scope="module", params=first_always(["xol", "q_lambda"]))
+@pytest.fixture(
+    scope="module",
+    params=first_always([("quick", "xol"), ("directed", "xol"), ("quick", "q_lambda")]),
+)
 def settings(request):
-    """Return the settings of a run with either learner."""
-    return load_settings("quick", changes=[f"learner.method={request.param}"])
+    """Return the settings of a run with either learner, and beyond the paper."""
+    preset, method = request.param
+    return load_settings(preset, changes=[f"learner.method={method}"])
 
 
 @pytest.fixture(scope="module")
