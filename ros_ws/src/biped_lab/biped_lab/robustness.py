@@ -1,0 +1,147 @@
+"""Walks learned undisturbed, where robot, floor or senses are not as they were.
+
+    python -m biped_lab.robustness --seeds 20
+
+Learns the walk with XoL beyond the paper, with XoL by Strategy 2, and by a search over
+plans, which answers no observation, on the same seeds and undisturbed; then walks what
+was learned, frozen, under each disturbance once per seed. Prints a table in Markdown:
+how many walks were completed, of those whose learning came to its end.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from biped_bringup.replay import ReplayingWalker
+from biped_bringup.run_settings import RunSettings, changed_settings, load_settings
+from biped_bringup.training import TrainingRun
+from biped_bringup.walker import Walker
+from biped_common.command_line import positive
+from biped_common.seeds import learner_stream, robot_stream
+from biped_lab.searches.plan import PlanSpace
+from biped_lab.searches.search_contestant import PlannedWalk
+from biped_lab.searches.searcher import Walked
+from biped_lab.searches.tail_search import TailSearch, TailSearchOptions
+from learner_node.walking.task import WalkTask
+from learner_node.walking.walks import FrozenWalk
+
+MOST_EPISODES = 400
+DISTURBANCES: Final = {
+    "none": (),
+    "friction 0.5 instead of 0.9": ("sim.disturbances.friction=0.5",),
+    "masses, 5 % std. dev. a link": ("sim.disturbances.mass_error=0.05",),
+    "masses, 15 %": ("sim.disturbances.mass_error=0.15",),
+    "a push of 5 N for 0.1 s": ("sim.disturbances.push_force_n=5",),
+    "a push of 20 N": ("sim.disturbances.push_force_n=20",),
+    "waist position, 2 mm noise": ("sim.disturbances.position_noise_m=0.002",),
+    "ZMP, 2 mm noise": ("sim.disturbances.zmp_noise_m=0.002",),
+    "acceleration, 0.1 m/s^2 noise": ("sim.disturbances.acceleration_noise_m_s2=0.1",),
+    "the engine without contact": ("sim.engine=kinematic",),
+}
+Learned = Callable[[], FrozenWalk | PlannedWalk]
+"""Returns the walk that was learned, to be walked from its beginning."""
+Way = Callable[[RunSettings, int], Learned | None]
+"""Learns with settings and a seed; None where that takes too long."""
+
+
+def learn(settings: RunSettings, seed: int) -> Learned | None:
+    """Return the greedy walk that a learner learns, None where it does not in time."""
+    with closing(TrainingRun(settings, seed)) as run:
+        run.run(MOST_EPISODES, False, lambda _: True)
+        return run.session.greedy if run.learned else None
+
+
+def search(settings: RunSettings, seed: int) -> Learned | None:
+    """Return the walk that tail search finds, None where it does not in time."""
+    space = PlanSpace.of_knots(settings)
+    rng = np.random.default_rng(learner_stream(seed))
+    searcher = TailSearch(TailSearchOptions(), space, rng)
+    whole = replace(
+        settings.learner.schedule, first_target_s=settings.gait.duration_s, run_on=False
+    )
+    learner = replace(settings.learner, schedule=whole)
+    task = WalkTask(learner, settings.gait.walk_ticks)
+    with closing(ReplayingWalker(settings, rng)) as walker:
+        for _ in range(MOST_EPISODES):
+            chosen = space.nearest(searcher.ask(space.points))
+            result = walker.walk(PlannedWalk(task, space, chosen))
+            if result.completed:
+                return lambda: PlannedWalk(task, space, chosen)
+            cost = math.inf if result.cost is None else result.cost.total
+            searcher.tell(Walked(result.control_ticks, result.completed, cost))
+    return None
+
+
+def contestants(
+    preset: str,
+) -> Iterator[tuple[str, RunSettings, Way]]:
+    """Yield name, settings and way to learn of each.
+
+    Args:
+        preset: of the one beyond the paper; gait and correction of all are as in it.
+    """
+    beyond = load_settings(preset)
+    paper = load_settings(
+        changes=[
+            "learner.xol.fixed_mode.strategy=strategy2",
+            "learner.schedule.successes_per_subtask=3",
+        ]
+    )
+    paper = replace(paper, gait=beyond.gait, correction=beyond.correction)
+    yield f"XoL, preset {preset}", beyond, learn
+    yield "XoL, Strategy 2, LT = 3", paper, learn
+    yield "tail search", beyond, search
+
+
+def completed(
+    learned: Learned, settings: RunSettings, seed: int, changes: tuple[str, ...]
+) -> bool:
+    """Walk what was learned once, disturbed; return whether it came to the end."""
+    walker = Walker(
+        changed_settings(settings, changes=changes),
+        np.random.default_rng(robot_stream(seed)),
+    )
+    with closing(walker):
+        return walker.walk(learned()).completed
+
+
+def main() -> int:
+    """Learn, walk and print."""
+    parser = argparse.ArgumentParser(
+        prog="python -m biped_lab.robustness", description=__doc__.splitlines()[0]
+    )
+    parser.add_argument("--preset", default="directed", help="(default: directed)")
+    parser.add_argument("--seeds", type=positive, default=20, metavar="N")
+    parser.add_argument("--first", type=positive, default=7001, metavar="SEED")
+    options = parser.parse_args()
+    seeds = range(options.first, options.first + options.seeds)
+    columns: dict[str, list[str]] = {}
+    for name, settings, way in contestants(options.preset):
+        found = {seed: way(settings, seed) for seed in seeds}
+        learned = {seed: walk for seed, walk in found.items() if walk is not None}
+        columns[f"{name} ({len(learned)} of {len(seeds)} learned)"] = [
+            str(sum(completed(w, settings, n, changes) for n, w in learned.items()))
+            for changes in DISTURBANCES.values()
+        ]
+        print(f"{name}: walked", file=sys.stderr, flush=True)
+    print(_line(["disturbance", *columns]))
+    print(_line(["---"] * (1 + len(columns))))
+    for label, *cells in zip(DISTURBANCES, *columns.values(), strict=True):
+        print(_line([label, *cells]))
+    return 0
+
+
+def _line(cells: list[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

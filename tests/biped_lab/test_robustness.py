@@ -1,0 +1,42 @@
+"""Learned walks under disturbances."""
+
+import pytest
+
+from biped_bringup.run_settings import changed_settings, load_settings
+from biped_lab.robustness import DISTURBANCES, completed, contestants, learn, search
+
+SHORT = ("gait.steps=1", "gait.double_support_s=0.9")
+SEED = 71
+
+
+@pytest.fixture(scope="module", params=[learn, search])
+def learned(request):
+    settings = changed_settings(load_settings("t_ds_090"), changes=SHORT)
+    return request.param(settings, SEED), settings
+
+
+def test_what_was_learned_is_walked_undisturbed(learned):
+    assert completed(*learned, SEED, DISTURBANCES["none"])
+
+
+def test_a_disturbance_that_nobody_holds_is_felt(learned):
+    hard = ("sim.disturbances.push_force_n=300", "sim.disturbances.push_time_s=1")
+    assert not completed(*learned, SEED, hard)
+
+
+def test_what_is_not_learned_in_time_is_none(monkeypatch):
+    monkeypatch.setattr("biped_lab.robustness.MOST_EPISODES", 1)
+    settings = load_settings("t_ds_090")
+    assert learn(settings, SEED) is None and search(settings, SEED) is None
+
+
+def test_all_walk_the_same_walk():
+    every = [settings for _, settings, _ in contestants("t_ds_090")]
+    assert {(each.gait, each.correction) for each in every} == {
+        (every[0].gait, every[0].correction)
+    }
+
+
+@pytest.mark.parametrize("changes", DISTURBANCES.values(), ids=DISTURBANCES)
+def test_every_disturbance_is_one(changes):
+    changed_settings(load_settings(), changes=changes)
