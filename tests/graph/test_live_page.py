@@ -25,7 +25,11 @@ def until(condition):
         time.sleep(0.1)
 
 
-def test_a_page_is_announced_started_again_when_it_dies_and_ended(domain, tmp_path):
+def test_a_page_is_announced_started_again_when_it_dies_and_ended(
+    domain, tmp_path, monkeypatch
+):
+    # Pages of other tests would take the port over while nobody has it.
+    monkeypatch.setattr("biped_bringup.supervisor.live_page._FIRST_PORT", 8310)
     said = []
     page = LivePage(
         os.environ | {"ROS_DOMAIN_ID": str(domain)},
