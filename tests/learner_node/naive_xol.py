@@ -147,13 +147,7 @@ class NaiveXol:
             else:
                 chosen.append(self.roulette(state, i, draws[i]))
         for i, j in enumerate(chosen):
-            if (i, j) not in state.selected:
-                state.selected.add((i, j))
-                if 0 < self.settings.selection_memory <= state.selections[i][j]:
-                    state.selections[i][j] //= 2
-                    for failures in state.failures:
-                        failures[i][j] //= 2
-                state.selections[i][j] += 1
+            self.count_selection(state, i, j)
         if self.is_penalty_state(state):
             state.fixed = False
         every = range(len(self.penalty_values))
@@ -166,6 +160,15 @@ class NaiveXol:
             self.kept[state] = chosen
         self.put_in_queue(state, chosen)
         return self.action_of(chosen)
+
+    def count_selection(self, state, i, j):
+        if (i, j) not in state.selected:
+            state.selected.add((i, j))
+            if 0 < self.settings.selection_memory <= state.selections[i][j]:
+                state.selections[i][j] //= 2
+                for failures in state.failures:
+                    failures[i][j] //= 2
+            state.selections[i][j] += 1
 
     def roulette(self, state, i, draw):
         candidates = self.avoiding(state, i, len(self.penalty_values))
@@ -342,13 +345,7 @@ class NaiveXol:
             if effect == 0.0 or abs(effect) < self.settings.blame_share * strongest:
                 continue
             for j in range(self.sizes[i]):
-                if (i, j) not in state.selected:
-                    state.selected.add((i, j))
-                    if 0 < self.settings.selection_memory <= state.selections[i][j]:
-                        state.selections[i][j] //= 2
-                        for failures in state.failures:
-                            failures[i][j] //= 2
-                    state.selections[i][j] += 1
+                self.count_selection(state, i, j)
                 mildest = min(chose[state, i]) if effect > 0 else max(chose[state, i])
                 fails = (j >= mildest) if effect > 0 else (j <= mildest)
                 if fails and (penalty, i, j) not in state.failed:
