@@ -21,7 +21,12 @@ from typing import Final
 import numpy as np
 
 from biped_bringup.replay import ReplayingWalker
-from biped_bringup.run_settings import RunSettings, changed_settings, load_settings
+from biped_bringup.run_settings import (
+    PRESETS,
+    RunSettings,
+    changed_settings,
+    load_settings,
+)
 from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_common.command_line import positive
@@ -118,7 +123,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         prog="python -m biped_lab.robustness", description=__doc__.splitlines()[0]
     )
-    parser.add_argument("--preset", default="directed", help="(default: directed)")
+    parser.add_argument("--preset", choices=PRESETS, default="directed")
     parser.add_argument("--seeds", type=positive, default=20, metavar="N")
     parser.add_argument("--first", type=positive, default=7001, metavar="SEED")
     options = parser.parse_args()
