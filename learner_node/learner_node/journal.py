@@ -14,8 +14,9 @@ Tables = Iterable[NDArray[Any]]
 class RowJournal:
     """Rows of a learner's tables as they were before an episode visited their states.
 
-    An episode changes the rows of the states that it visits, and no others. What this
-    costs grows with the episode, not with all that is known.
+    An episode changes the rows of the states that it visits, and few others, which are
+    told as visited before they change. What this costs grows with the episode, not with
+    all that is known.
     """
 
     def __init__(self) -> None:

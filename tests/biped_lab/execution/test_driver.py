@@ -2,6 +2,7 @@
 
 import fcntl
 import itertools
+import json
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -19,6 +20,15 @@ def test_a_run_that_raises_is_told_in_a_line_with_the_place(tmp_path, odd_contes
     (failure,) = carried_out(tmp_path, odd(good="none", bad="raise"))
     assert failure.reason.startswith("ZeroDivisionError: one leg too few")
     assert "odd_contestants.py, line" in failure.reason
+
+
+def test_a_sitting_carries_out_the_first_seeds_and_no_more(tmp_path, biped):
+    study = tmp_path / "walks.yaml"
+    study.write_text(json.dumps(WALKS | {"seeds": {"first": 1, "count": 3}}))
+    done = biped("lab", "run", study, "--seeds", "1", "--out", tmp_path / "lab")
+    assert done.status == 0
+    assert "walks: 2 of 2 runs done" in done.out
+    assert sum(is_done(run) for run in (tmp_path / "lab" / "runs").iterdir()) == 2
 
 
 def test_a_run_that_raises_leaves_the_others_of_its_job_alone(

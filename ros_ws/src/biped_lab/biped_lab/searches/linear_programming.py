@@ -39,7 +39,6 @@ from sim_node.control_tick import ControlTick
 from sim_node.settings import LimitSettings, SimSettings
 from trajectory_node.bspline import CorrectionSpline
 
-_PER_POSITION, _PER_ACCELERATION_S2 = 0.83, -0.051
 # Between learning ticks the response is nearly straight: these control ticks of each
 # are rows of the program, from 0 for the first.
 _ROWS_OF_A_TICK = (0, 4, 8)
@@ -132,7 +131,10 @@ def _response_to_one_tick(settings: RunSettings, ticks: int) -> NDArray[np.float
         pushed.append(spline.push(none, nowhere))
     d = np.concatenate(([0.0], *(each[:, 0] for each in pushed)))[: ticks + 3]
     acceleration = np.diff(d, 2) / CONTROL_PERIOD_S**2
-    return _PER_POSITION * d[1:-1] + _PER_ACCELERATION_S2 * acceleration
+    plant = settings.learner.blame
+    return (
+        plant.zmp_per_position * d[1:-1] + plant.zmp_per_acceleration_s2 * acceleration
+    )
 
 
 def _smallest_peak(
