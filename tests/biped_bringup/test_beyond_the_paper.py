@@ -21,7 +21,7 @@ def test_the_whole_walk_is_learned_in_few_episodes(training):
 
 
 def test_a_walk_that_no_other_preset_learns_is_learned(training):
-    run = training(load_settings("t_ds_090"), SEED)
+    run = training(load_settings("t_ds_080"), SEED)
     run.run(max_episodes=200, stop_at_schedule=False, after_episode=lambda _: True)
     assert run.learned
     assert run.greedy_walk().completed
@@ -31,7 +31,7 @@ def test_a_walk_that_no_other_preset_learns_is_learned(training):
 def test_a_resumed_run_is_as_if_never_interrupted(
     training, uninterrupted, tmp_path, episodes
 ):
-    settings = load_settings("t_ds_090", changes=SHORT)
+    settings = load_settings("t_ds_080", changes=SHORT)
     run = learn(training(settings, SEED), episodes)
     run.save(tmp_path / "memory.npz")
     resumed = learn(training(tmp_path / "memory.npz"), 8)
@@ -39,7 +39,7 @@ def test_a_resumed_run_is_as_if_never_interrupted(
 
 
 def test_replay_changes_nothing(training):
-    settings = load_settings("t_ds_090", changes=SHORT)
+    settings = load_settings("t_ds_080", changes=SHORT)
     replayed = learn(training(settings, SEED), 8)
     computed = learn(training(settings, SEED, replay_bytes=0), 8)
     assert replayed.walker.ticks.replayed > 0

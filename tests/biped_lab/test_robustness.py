@@ -11,7 +11,7 @@ SEED = 71
 
 @pytest.fixture(scope="module", params=[learn, search])
 def learned(request):
-    settings = changed_settings(load_settings("t_ds_090"), changes=SHORT)
+    settings = changed_settings(load_settings("t_ds_080"), changes=SHORT)
     return request.param(settings, SEED), settings
 
 
@@ -26,12 +26,12 @@ def test_a_disturbance_that_nobody_holds_is_felt(learned):
 
 def test_what_is_not_learned_in_time_is_none(monkeypatch):
     monkeypatch.setattr("biped_lab.robustness.MOST_EPISODES", 1)
-    settings = load_settings("t_ds_090")
+    settings = load_settings("t_ds_080")
     assert learn(settings, SEED) is None and search(settings, SEED) is None
 
 
 def test_all_walk_the_same_walk():
-    every = [settings for _, settings, _ in contestants("t_ds_090")]
+    every = [settings for _, settings, _ in contestants("t_ds_080")]
     assert {(each.gait, each.correction) for each in every} == {
         (every[0].gait, every[0].correction)
     }

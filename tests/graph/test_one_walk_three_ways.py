@@ -17,7 +17,7 @@ TIMEOUT_S = 90.0
 
 @pytest.fixture(
     scope="module",
-    params=first_always([("quick", "xol"), ("t_ds_090", "xol"), ("quick", "q_lambda")]),
+    params=first_always([("quick", "xol"), ("t_ds_080", "xol"), ("quick", "q_lambda")]),
 )
 def settings(request):
     """Return the settings of a run with either learner, and beyond the paper."""

@@ -42,15 +42,25 @@ class InputSettings(Settings):
     acceleration_radius_m_s2: float = setting(
         0.9, "m/s^2", "waist acceleration", above=0.0
     )
+    clock_period_s: float = setting(
+        0.0,
+        "s",
+        "period of a clock that is an input, too, T_step for the gait's (beyond the "
+        "paper); 0: none",
+        lower=0.0,
+        upper=100.0,
+    )
+    clock_radius_s: float = setting(0.1, "s", "clock", above=0.0)
 
     @property
     def radii(self) -> tuple[float, ...]:
         """One width per continuous input, in the order of the inputs."""
-        return (
+        radii = (
             (self.waist_radius_m,) * 2
             + (self.zmp_error_radius_m,) * 2
             + (self.acceleration_radius_m_s2,) * 2
         )
+        return (*radii, self.clock_radius_s) if self.clock_period_s else radii
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_common.timing import (
+    CONTROL_PERIOD_US,
     LEARNING_PERIOD_US,
     TICKS_PER_LEARNING_TICK,
     microseconds,
@@ -26,7 +27,7 @@ from learner_node.problem import ActionSpace, Problem
 from learner_node.walking.cost import CostEstimate, CostIntegral
 from learner_node.walking.response import zmp_response
 from learner_node.walking.schedule import LearningSchedule
-from learner_node.walking.settings import LearnerSettings
+from learner_node.walking.settings import InputSettings, LearnerSettings
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
@@ -63,22 +64,26 @@ N_PENALTIES = 3  # Table 1, the additional penalty included
 _YES, _NO = 10.0, -10.0
 
 
-def sensory_input(observation: Observation) -> NDArray[np.float64]:
-    """Return the (8,) inputs, in the order of INPUT_NAMES.
+def sensory_input(
+    observation: Observation, settings: InputSettings
+) -> NDArray[np.float64]:
+    """Return the (8,) inputs, in the order of INPUT_NAMES; a clock is a ninth.
 
     Flags are the planned ones, +10 or -10; the rest is in SI units and is scaled by the
     widths of the basis functions.
     """
     phase = observation.phase
-    return np.array(
-        (
-            _YES if phase.planned_right_support else _NO,
-            _YES if phase.planned_double_support else _NO,
-            *observation.waist_in_support_foot_m,
-            *observation.zmp_error_m,
-            *observation.waist_acceleration_m_s2,
-        )
+    inputs = (
+        _YES if phase.planned_right_support else _NO,
+        _YES if phase.planned_double_support else _NO,
+        *observation.waist_in_support_foot_m,
+        *observation.zmp_error_m,
+        *observation.waist_acceleration_m_s2,
     )
+    if not settings.clock_period_s:
+        return np.array(inputs)
+    walked_us = observation.control_tick * CONTROL_PERIOD_US
+    return np.array((*inputs, walked_us % microseconds(settings.clock_period_s) * 1e-6))
 
 
 class End(NamedTuple):
@@ -146,6 +151,10 @@ class WalkTask:
         if observation.control_tick >= self.schedule.target_ticks:
             return self._completed(observation)
         return None
+
+    def inputs(self, observation: Observation) -> NDArray[np.float64]:
+        """Return what a learner is given of an observation (`sensory_input`)."""
+        return sensory_input(observation, self.settings.inputs)
 
     def decides(self, observation: Observation) -> bool:
         """Return whether a decision is due; between decisions one is held."""

@@ -16,7 +16,7 @@ from biped_common.timing import TICKS_PER_LEARNING_TICK
 from learner_node.learner import Learner, tell
 from learner_node.walking.cost import CostIntegral
 from learner_node.walking.settings import LearnerSettings
-from learner_node.walking.task import NO_CORRECTION_M, WalkTask, sensory_input
+from learner_node.walking.task import NO_CORRECTION_M, WalkTask
 from msgs_json.end_cause import EndCause
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
@@ -55,7 +55,7 @@ class LearningWalk:
                 self._chance = None
                 return end.result
         if task.decides(observation):
-            inputs = sensory_input(observation)
+            inputs = task.inputs(observation)
             if begins:
                 self._chance = learner.rng.bit_generator.state
                 learner.begin_episode(inputs)
@@ -116,7 +116,7 @@ def greedy_walk(
     """
 
     def decide(observation: Observation) -> NDArray[np.float64]:
-        chosen = learner.greedy(sensory_input(observation))
+        chosen = learner.greedy(task.inputs(observation))
         return NO_CORRECTION_M if chosen is None else task.correction_m(chosen)
 
     return FrozenWalk(settings, target_ticks, decide)

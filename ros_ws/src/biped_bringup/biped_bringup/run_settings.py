@@ -24,7 +24,7 @@ from learner_node.walking.settings import LearnerSettings
 from sim_node.settings import SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 
-PRESETS = ("paper", "coarse", "quick", "literal", "directed", "t_ds_090")
+PRESETS = ("paper", "coarse", "quick", "literal", "directed", "t_ds_090", "t_ds_080")
 DEFAULT_PRESET = "paper"
 
 

@@ -42,12 +42,12 @@ from biped_common.settings import from_mapping, overlay, to_mapping
 from biped_common.timing import LEARNING_PERIOD_S, seconds
 from biped_description.robot import Robot
 from biped_lab.drawing import Scene, picture
-from learner_node.walking.task import End, WalkTask, sensory_input
+from learner_node.walking.task import End, WalkTask
 from msgs_json.observation import Observation
 from sim_node.control_tick import ControlTick
 
 _FLAG, _LENGTH_M, _ACCELERATION_M_S2 = 10.0, 2.0, 1000.0
-_HIGH = np.array([_FLAG] * 2 + [_LENGTH_M] * 4 + [_ACCELERATION_M_S2] * 2)
+_HIGH = [_FLAG] * 2 + [_LENGTH_M] * 4 + [_ACCELERATION_M_S2] * 2
 
 
 class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
@@ -94,7 +94,9 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
         self.task = WalkTask(learner, self._walker.walk_ticks)
         self._walks = 0
         self._over = True
-        self.observation_space = Box(-_HIGH, _HIGH, dtype=np.float64)
+        clock_s = learner.inputs.clock_period_s
+        self._high = np.array([*_HIGH, clock_s] if clock_s else _HIGH)
+        self.observation_space = Box(-self._high, self._high, dtype=np.float64)
         self.action_space = MultiDiscrete(list(self.task.problem.space.alternatives))
 
     def reset(
@@ -111,7 +113,7 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
         self.task.begin()
         self.task.end(observation)
         self._over = False
-        return _inputs(observation), {}
+        return self._inputs(observation), {}
 
     def step(
         self, action: NDArray[np.int64]
@@ -126,13 +128,17 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
             end = self.task.end(observation)
             if end is not None or self.task.decides(observation):
                 break
-        inputs = _inputs(observation)
+        inputs = self._inputs(observation)
         if end is None:
             return inputs, 0.0, False, False, {}
         self._over = True
         outcome = end.outcome
         blameless = outcome.penalty is None and outcome.reward is None
         return inputs, outcome.reward or 0.0, not blameless, blameless, _info(end)
+
+    def _inputs(self, observation: Observation) -> NDArray[np.float64]:
+        # What ends a walk can lie beyond any bound; what goes on never does.
+        return np.clip(self.task.inputs(observation), -self._high, self._high)
 
     def render(self) -> NDArray[np.uint8] | None:
         """Return (height, width, 3) pixels: the robot from its right and from above."""
@@ -157,11 +163,6 @@ class BipedWaistEnv(gymnasium.Env[NDArray[np.float64], NDArray[np.int64]]):
     def close(self) -> None:
         """End the world."""
         self._walker.close()
-
-
-def _inputs(observation: Observation) -> NDArray[np.float64]:
-    # What ends a walk can lie beyond any bound; what goes on never does.
-    return np.clip(sensory_input(observation), -_HIGH, _HIGH)
 
 
 def _info(end: End) -> dict[str, Any]:
