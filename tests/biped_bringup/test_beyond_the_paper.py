@@ -3,14 +3,27 @@
 Seeds here are not those of any result.
 """
 
+from contextlib import closing
+
+import numpy as np
 import pytest
 from tests.biped_bringup.runs import learn, record
 
-from biped_bringup.run_settings import load_settings
+from biped_bringup.run_settings import changed_settings, load_settings
+from biped_bringup.walker import Walker
 from biped_common.settings import SettingsError
+from learner_node.walking.walks import static_walk
+from msgs_json.end_cause import EndCause
 
 SEED = 71
 SHORT = ("gait.steps=2",)
+
+
+def uncorrected(settings):
+    """Return how the walk without correction ends, its ZMP limit lifted."""
+    lifted = changed_settings(settings, changes=["sim.limits.zmp_error_m=1.0"])
+    with closing(Walker(lifted, np.random.default_rng(0))) as walker:
+        return walker.walk(static_walk(settings.learner, walker.walk_ticks))
 
 
 def test_the_whole_walk_is_learned_in_few_episodes(training):
@@ -20,9 +33,11 @@ def test_the_whole_walk_is_learned_in_few_episodes(training):
     assert run.greedy_walk().completed
 
 
-def test_a_walk_that_no_other_preset_learns_is_learned(training):
-    run = training(load_settings("t_ds_080"), SEED)
-    run.run(max_episodes=200, stop_at_schedule=False, after_episode=lambda _: True)
+def test_a_walk_that_would_fall_is_learned(training):
+    settings = load_settings("t_ds_080")
+    assert uncorrected(settings).end_cause is EndCause.FEET_UNLOADED
+    run = training(settings, SEED)
+    run.run(max_episodes=400, stop_at_schedule=False, after_episode=lambda _: True)
     assert run.learned
     assert run.greedy_walk().completed
 

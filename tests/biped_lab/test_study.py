@@ -207,7 +207,9 @@ def test_a_wrong_file_is_refused(
 def test_an_unknown_name_is_refused_with_those_that_are_known() -> None:
     with pytest.raises(StudyError) as refusal:
         load_study("fig7")
-    assert "must be a YAML file, or one of beyond, beyond_080, fig2" in str(refusal.value)
+    assert "must be a YAML file, or one of beyond, beyond_080, fig2" in str(
+        refusal.value
+    )
 
 
 def test_a_study_without_a_reduced_form_says_so() -> None:
