@@ -3,7 +3,14 @@
 import pytest
 
 from biped_bringup.run_settings import changed_settings, load_settings
-from biped_lab.robustness import DISTURBANCES, completed, contestants, learn, search
+from biped_lab.robustness import (
+    DISTURBANCES,
+    column,
+    completed,
+    contestants,
+    learn,
+    search,
+)
 
 SHORT = ("gait.steps=1", "gait.double_support_s=0.9")
 SEED = 71
@@ -16,12 +23,23 @@ def learned(request):
 
 
 def test_what_was_learned_is_walked_undisturbed(learned):
-    assert completed(*learned, SEED, DISTURBANCES["none"])
+    assert completed(*learned, SEED, walks=2) == 2
 
 
 def test_a_disturbance_that_nobody_holds_is_felt(learned):
+    walk, settings = learned
     hard = ("sim.disturbances.push_force_n=300", "sim.disturbances.push_time_s=1")
-    assert not completed(*learned, SEED, hard)
+    assert completed(walk, changed_settings(settings, changes=hard), SEED) == 0
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("while_learning", [False, True])
+def test_a_table_has_a_cell_for_each_disturbance(while_learning):
+    settings = changed_settings(load_settings("directed"), changes=SHORT)
+    cells = list(column(settings, learn, range(SEED, SEED + 1), 2, while_learning))
+    assert len(cells) == len(DISTURBANCES)
+    assert cells[0].startswith("2 of 2")
+    assert all(("learned, " in cell) == while_learning for cell in cells)
 
 
 def test_what_is_not_learned_in_time_is_none(monkeypatch):

@@ -1,11 +1,13 @@
-"""Walks learned undisturbed, where robot, floor or senses are not as they were.
+"""Walks where robot, floor or senses are not as planned, at test or in learning too.
 
     python -m biped_lab.robustness --seeds 20
+    python -m biped_lab.robustness --seeds 20 --while-learning
 
-Learns the walk with XoL beyond the paper, with XoL by Strategy 2, and by a search over
-plans, which answers no observation, on the same seeds and undisturbed; then walks what
-was learned, frozen, under each disturbance once per seed. Prints a table in Markdown:
-how many walks were completed, of those whose learning came to its end.
+Learns the walk with XoL beyond the paper, with the same but for fixed-mode states, with
+XoL by Strategy 2, and by a search over plans, which answers no observation, on the same
+seeds; undisturbed, or under each disturbance. Then walks what was learned, frozen,
+under each disturbance, some walks per seed. Prints a table in Markdown: how many walks
+were completed, of those whose learning came to its end, and how long learning took.
 """
 
 from __future__ import annotations
@@ -16,7 +18,9 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
-from typing import Final
+from functools import partial
+from statistics import median
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -51,8 +55,16 @@ DISTURBANCES: Final = {
     "acceleration, 0.1 m/s^2 noise": ("sim.disturbances.acceleration_noise_m_s2=0.1",),
     "the engine without contact": ("sim.engine=kinematic",),
 }
-Learned = Callable[[], FrozenWalk | PlannedWalk]
-"""Returns the walk that was learned, to be walked from its beginning."""
+
+
+class Learned(NamedTuple):
+    """What came of learning."""
+
+    episodes: int
+    walk: Callable[[], FrozenWalk | PlannedWalk]
+    """Returns the walk that was learned, to be walked from its beginning."""
+
+
 Way = Callable[[RunSettings, int], Learned | None]
 """Learns with settings and a seed; None where that takes too long."""
 
@@ -61,7 +73,7 @@ def learn(settings: RunSettings, seed: int) -> Learned | None:
     """Return the greedy walk that a learner learns, None where it does not in time."""
     with closing(TrainingRun(settings, seed)) as run:
         run.run(MOST_EPISODES, False, lambda _: True)
-        return run.session.greedy if run.learned else None
+        return Learned(run.episodes, run.session.greedy) if run.learned else None
 
 
 def search(settings: RunSettings, seed: int) -> Learned | None:
@@ -74,12 +86,15 @@ def search(settings: RunSettings, seed: int) -> Learned | None:
     )
     learner = replace(settings.learner, schedule=whole)
     task = WalkTask(learner, settings.gait.walk_ticks)
-    with closing(ReplayingWalker(settings, rng)) as walker:
-        for _ in range(MOST_EPISODES):
+    # Where chance has a part in the walks, none is like another.
+    replays = not settings.sim.disturbances.random
+    with closing((ReplayingWalker if replays else Walker)(settings, rng)) as walker:
+        for episode in range(MOST_EPISODES):
             chosen = space.nearest(searcher.ask(space.points))
             result = walker.walk(PlannedWalk(task, space, chosen))
             if result.completed:
-                return lambda: PlannedWalk(task, space, chosen)
+                walk = partial(PlannedWalk, task, space, chosen)
+                return Learned(episode + 1, walk)
             cost = math.inf if result.cost is None else result.cost.total
             searcher.tell(Walked(result.control_ticks, result.completed, cost))
     return None
@@ -102,20 +117,38 @@ def contestants(
     )
     paper = replace(paper, gait=beyond.gait, correction=beyond.correction)
     yield f"XoL, preset {preset}", beyond, learn
+    explores = changed_settings(
+        beyond, changes=["learner.xol.fixed_mode.strategy=none"]
+    )
+    yield "the same, no fixed mode", explores, learn
     yield "XoL, Strategy 2, LT = 3", paper, learn
     yield "tail search", beyond, search
 
 
 def completed(
-    learned: Learned, settings: RunSettings, seed: int, changes: tuple[str, ...]
-) -> bool:
-    """Walk what was learned once, disturbed; return whether it came to the end."""
-    walker = Walker(
-        changed_settings(settings, changes=changes),
-        np.random.default_rng(robot_stream(seed)),
-    )
+    learned: Learned, settings: RunSettings, seed: int, walks: int = 1
+) -> int:
+    """Walk what was learned; return how many walks came to the end."""
+    walker = Walker(settings, np.random.default_rng(robot_stream(seed)))
     with closing(walker):
-        return walker.walk(learned()).completed
+        return sum(walker.walk(learned.walk()).completed for _ in range(walks))
+
+
+def column(
+    settings: RunSettings, way: Way, seeds: range, walks: int, while_learning: bool
+) -> Iterator[str]:
+    """Yield a cell for each disturbance: walks completed, episodes of learning."""
+    found: dict[int, Learned | None] = {}
+    for changes in DISTURBANCES.values():
+        disturbed = changed_settings(settings, changes=changes)
+        if while_learning or not found:
+            found = {n: way(disturbed, n) for n in seeds}
+        learned = {n: walk for n, walk in found.items() if walk is not None}
+        held = sum(completed(w, disturbed, n, walks) for n, w in learned.items())
+        of = f"{held} of {walks * len(learned)}"
+        # Those that did not learn took longer than any that did.
+        episodes = median(w.episodes if w else math.inf for w in found.values())
+        yield f"{of}; {len(learned)} learned, {episodes:g}" if while_learning else of
 
 
 def main() -> int:
@@ -126,16 +159,32 @@ def main() -> int:
     parser.add_argument("--preset", choices=PRESETS, default="directed")
     parser.add_argument("--seeds", type=positive, default=20, metavar="N")
     parser.add_argument("--first", type=positive, default=7001, metavar="SEED")
+    parser.add_argument(
+        "--walks", type=positive, default=1, metavar="N", help="per seed (default 1)"
+    )
+    parser.add_argument(
+        "--columns",
+        type=positive,
+        nargs="+",
+        metavar="N",
+        help="only these, of the four: 1 beyond the paper, 2 without fixed mode, "
+        "3 Strategy 2, 4 plan",
+    )
+    parser.add_argument(
+        "--while-learning",
+        action="store_true",
+        help="disturbances are there while learning, too; a cell then also says how "
+        "many seeds learned, and the median of their episodes",
+    )
     options = parser.parse_args()
     seeds = range(options.first, options.first + options.seeds)
     columns: dict[str, list[str]] = {}
-    for name, settings, way in contestants(options.preset):
-        found = {seed: way(settings, seed) for seed in seeds}
-        learned = {seed: walk for seed, walk in found.items() if walk is not None}
-        columns[f"{name} ({len(learned)} of {len(seeds)} learned)"] = [
-            str(sum(completed(w, settings, n, changes) for n, w in learned.items()))
-            for changes in DISTURBANCES.values()
-        ]
+    for n, (name, settings, way) in enumerate(contestants(options.preset), 1):
+        if options.columns is not None and n not in options.columns:
+            continue
+        columns[name] = list(
+            column(settings, way, seeds, options.walks, options.while_learning)
+        )
         print(f"{name}: walked", file=sys.stderr, flush=True)
     print(_line(["disturbance", *columns]))
     print(_line(["---"] * (1 + len(columns))))
