@@ -77,6 +77,57 @@ class DisturbanceSettings(Settings):
 
 
 @dataclass(frozen=True)
+class SensorSettings(Settings):
+    """How well a robot's sensors know it, where observations come from them.
+
+    Standard deviations of white noise, per control tick. The defaults are of the order
+    of 14-bit encoders, an industrial IMU and six-axis sensors for a robot of 30 kg.
+    """
+
+    delay_ticks: int = setting(
+        1, "control ticks", "age of the readings that are there", lower=0, upper=10
+    )
+    joint_position_noise_rad: float = setting(
+        2e-4, "rad", "noise on joint positions", lower=0.0
+    )
+    joint_velocity_noise_rad_s: float = setting(
+        0.02, "rad/s", "noise on joint velocities", lower=0.0
+    )
+    joint_torque_noise_nm: float = setting(
+        0.5, "N m", "noise on joint torques", lower=0.0
+    )
+    orientation_noise_rad: float = setting(
+        0.002, "rad", "noise on the torso's orientation, about each axis", lower=0.0
+    )
+    acceleration_noise_m_s2: float = setting(
+        0.05, "m/s^2", "noise on the torso's acceleration", lower=0.0
+    )
+    force_noise_n: float = setting(
+        1.0, "N", "noise on the vertical force on a sole", lower=0.0
+    )
+    moment_noise_nm: float = setting(
+        0.1, "N m", "noise on the moments on a sole", lower=0.0
+    )
+    tilt_limit_rad: float = setting(
+        0.3, "rad", "tilt of the torso at which a walk ends", above=0.0, upper=1.5
+    )
+
+    @property
+    def noisy(self) -> bool:
+        """Whether chance has a part in the readings."""
+        sizes = (
+            self.joint_position_noise_rad,
+            self.joint_velocity_noise_rad_s,
+            self.joint_torque_noise_nm,
+            self.orientation_noise_rad,
+            self.acceleration_noise_m_s2,
+            self.force_noise_n,
+            self.moment_noise_nm,
+        )
+        return any(size > 0.0 for size in sizes)
+
+
+@dataclass(frozen=True)
 class SimSettings(Settings):
     """The simulated robot."""
 
@@ -86,8 +137,21 @@ class SimSettings(Settings):
         "pybullet: full physics; kinematic: joints on their references, no contact",
         choices=tuple(ENGINES),
     )
+    observations: str = setting(
+        "truth",
+        "",
+        "truth: as the engine knows the robot; sensors: as its sensors do",
+        choices=("truth", "sensors"),
+    )
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
+    sensors: SensorSettings = section(SensorSettings)
+
+    @property
+    def random(self) -> bool:
+        """Whether chance has a part in the walks, so that no two are the same."""
+        sensed = self.observations == "sensors"
+        return self.disturbances.random or (sensed and self.sensors.noisy)
 
     def check_together(self) -> None:
         """Refuse disturbances that would have no effect."""
