@@ -15,7 +15,8 @@ class EndCause(str, Enum):
     from outside: in real time, a reference was not there when it was due, so that
     nobody knows what the walk would have been; who guides the robot fell silent; a user
     asked for it; a stranger published what only one node may; a robot's sensors fell
-    silent, or read what cannot be; somebody pressed the emergency stop.
+    silent, or read what cannot be; somebody pressed the emergency stop; or it did not
+    stand when its walk was to begin.
 
     Memory files know a cause by its place in this order: new ones come last.
     """
@@ -36,6 +37,7 @@ class EndCause(str, Enum):
     SENSORS_SILENT = "sensors_silent"
     SENSORS_INVALID = "sensors_invalid"
     EMERGENCY_STOP = "emergency_stop"
+    NOT_STANDING = "not_standing"
     TILT = "tilt"
 
     @property
@@ -57,5 +59,6 @@ _FROM_OUTSIDE = frozenset(
         EndCause.SENSORS_SILENT,
         EndCause.SENSORS_INVALID,
         EndCause.EMERGENCY_STOP,
+        EndCause.NOT_STANDING,
     )
 )

@@ -142,7 +142,11 @@ class SimulatedBiped:
         a walk that ended from outside the disturbances are the same as in it.
         """
         self._check_open()
-        self.world.load(self._standing)
+        end_cause = None
+        try:
+            self.world.load(self._standing)
+        except PlantStoppedError as stopped:
+            end_cause = stopped.cause
         disturbances = self.settings.disturbances
         chance: Mapping[str, Any] = {}
         if self.settings.random:
@@ -162,6 +166,7 @@ class SimulatedBiped:
             clock_ticks=self._watch.clock_ticks + 1,
             contact=self._standing_contact,
             waist_velocity=velocity[:2],
+            end_cause=end_cause,
             chance=chance,
         )
         self._references = standing(self._start)

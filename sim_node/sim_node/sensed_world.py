@@ -21,6 +21,9 @@ from sim_node.sensors import SensorReading
 class Hardware(Protocol):
     """Motors and sensors; one that cannot go on raises `PlantStoppedError`."""
 
+    def ready(self) -> bool:
+        """Return whether a walk can begin."""
+
     def place(self, waist: Array, q: Array) -> None:
         """Have the robot stand at rest, upright: waist (3,) [m], joints (12,) [rad]."""
 

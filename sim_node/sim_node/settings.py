@@ -9,6 +9,10 @@ from biped_description.settings import RobotSettings
 from biped_ros.processor import ProcessorSettings
 from sim_node.engines import ENGINES
 
+ROBOT = "robot"
+"""Instead of an engine."""
+_FELT_BY_NO_ROBOT = ("friction", "torque_limit_factor", "mass_error", "push_force_n")
+
 
 @dataclass(frozen=True)
 class LimitSettings(Settings):
@@ -111,6 +115,9 @@ class SensorSettings(Settings):
     tilt_limit_rad: float = setting(
         0.3, "rad", "tilt of the torso at which a walk ends", above=0.0, upper=1.5
     )
+    timeout_s: float = setting(
+        0.05, "s", "silence of a real robot's sensors at which a walk ends", above=0.0
+    )
 
     @property
     def noisy(self) -> bool:
@@ -134,8 +141,9 @@ class SimSettings(Settings):
     engine: str = setting(
         "pybullet",
         "",
-        "pybullet: full physics; kinematic: joints on their references, no contact",
-        choices=tuple(ENGINES),
+        "pybullet: full physics; kinematic: joints on their references, no contact; "
+        "robot: a real one, on ros2_control's topics",
+        choices=(*ENGINES, ROBOT),
     )
     observations: str = setting(
         "truth",
@@ -150,12 +158,21 @@ class SimSettings(Settings):
     @property
     def random(self) -> bool:
         """Whether chance has a part in the walks, so that no two are the same."""
-        sensed = self.observations == "sensors"
-        return self.disturbances.random or (sensed and self.sensors.noisy)
+        sensed = self.observations == "sensors" and self.sensors.noisy
+        return self.disturbances.random or sensed or self.engine == ROBOT
 
     def check_together(self) -> None:
         """Refuse disturbances that would have no effect."""
-        for name in ENGINES[self.engine].unfelt:
+        if self.engine == ROBOT and self.observations != "sensors":
+            raise SettingsError(
+                "observations",
+                self.observations,
+                "must be sensors with engine = robot",
+            )
+        unfelt = (
+            _FELT_BY_NO_ROBOT if self.engine == ROBOT else ENGINES[self.engine].unfelt
+        )
+        for name in unfelt:
             value = getattr(self.disturbances, name)
             nominal = getattr(DisturbanceSettings(), name)
             if value != nominal:
@@ -218,3 +235,26 @@ class SimNodeSettings(Settings):
         lower=0,
         upper=10,
     )
+
+
+@dataclass(frozen=True)
+class HardwareNodeSettings(Settings):
+    """All of the node that plays a robot's motors and sensors."""
+
+    robot: RobotSettings = section(RobotSettings)
+    sim: SimSettings = section(SimSettings)
+    seed: int = setting(0, "", "of the sensors' noise", lower=0, upper=2**63 - 1)
+    pace: str = setting(
+        "realtime",
+        "",
+        "realtime: 500 Hz, commands or not; lockstep: a tick for every command",
+        choices=("realtime", "lockstep"),
+    )
+    realtime_factor: float = setting(
+        1.0, "", "simulated seconds per second, in real time", above=0.0, upper=20.0
+    )
+
+    def check_together(self) -> None:
+        """Refuse to play a real robot on a real robot."""
+        if self.sim.engine == ROBOT:
+            raise SettingsError("sim.engine", ROBOT, "must be one that simulates")

@@ -68,6 +68,10 @@ class SimulatedHardware:
         self._late: deque[SensorReading] = deque(maxlen=1 + settings.delay_ticks)
         self._kept: dict[int, tuple[Array, tuple[SensorReading, ...]]] = {}
 
+    def ready(self) -> bool:
+        """Return True: nobody has to put the robot on its feet."""
+        return True
+
     def place(self, waist: Array, q: Array) -> None:
         """Put the robot at rest, upright; see `Physics.place`."""
         self.plant.place(waist, q)

@@ -154,6 +154,10 @@ def _emergency_stop(record: WalkRecord, _: RunSettings) -> str:
     return f"The emergency stop was pressed {_when(record)}, {_where(record)}."
 
 
+def _not_standing(_: WalkRecord, __: RunSettings) -> str:
+    return "The robot did not stand on both feet when the walk was to begin."
+
+
 def _tilt(record: WalkRecord, settings: RunSettings) -> str:
     return (
         f"The torso tilted by more than {settings.sim.sensors.tilt_limit_rad:g} rad "
@@ -178,6 +182,7 @@ _SENTENCES: Mapping[EndCause, Callable[[WalkRecord, RunSettings], str]] = {
     EndCause.SENSORS_SILENT: _sensors_silent,
     EndCause.SENSORS_INVALID: _sensors_invalid,
     EndCause.EMERGENCY_STOP: _emergency_stop,
+    EndCause.NOT_STANDING: _not_standing,
     EndCause.TILT: _tilt,
 }
 
