@@ -130,34 +130,29 @@ DIAGNOSTICS = Topic(
 HARDWARE_JOINTS = Topic(
     "/joint_state_broadcaster/joint_states",
     "sensor_msgs/msg/JointState",
-    depth=10,
     meaning="12 joints: position [rad], velocity [rad/s], effort [N m]",
 )
 HARDWARE_IMU = Topic(
     "/imu_sensor_broadcaster/imu",
     "sensor_msgs/msg/Imu",
-    depth=10,
     meaning="torso: orientation, specific force [m/s^2]",
 )
 HARDWARE_SOLES = tuple(
     Topic(
         f"/{side}_foot_force_torque_broadcaster/wrench",
         "geometry_msgs/msg/WrenchStamped",
-        depth=10,
-        meaning=f"floor on the {side} sole, at the point under the ankle [N], [N m]",
+            meaning=f"floor on the {side} sole, at the point under the ankle [N], [N m]",
     )
     for side in ("left", "right")
 )
 HARDWARE_COMMANDS = Topic(
     "/forward_position_controller/commands",
     "std_msgs/msg/Float64MultiArray",
-    depth=10,
     meaning="12 joint positions to be reached at the next tick [rad]",
 )
 EMERGENCY_STOP = Topic(
     "/emergency_stop",
     "std_msgs/msg/Bool",
-    depth=10,
     meaning="true: the robot must not be driven",
 )
 

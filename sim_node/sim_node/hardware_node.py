@@ -39,7 +39,8 @@ from sim_node.simulated_hardware import SimulatedHardware
 
 NAME = "simulated_hardware"
 _SETTLING_TICKS = 150
-# In lockstep, so long without a command a tick passes all the same, to be heard.
+# In lockstep, after so long without a command, sensors are heard again: time stands
+# still for the robot, but it must not seem dead.
 _IDLE_S = 0.5
 
 
@@ -90,10 +91,10 @@ class HardwareNode(GuardedNode):
         )
         self.create_service(Trigger, f"{NAME}/reset", self._on_reset)
         self._lockstep = settings.pace == "lockstep"
-        period_s = CONTROL_PERIOD_S / settings.realtime_factor
-        self._timer = self.create_timer(
-            _IDLE_S if self._lockstep else period_s, self._tick
-        )
+        if self._lockstep:
+            self._timer = self.create_timer(_IDLE_S, self._publish)
+        else:
+            self.create_timer(CONTROL_PERIOD_S / settings.realtime_factor, self._tick)
 
     def close(self) -> None:
         """End the plant."""
@@ -103,7 +104,12 @@ class HardwareNode(GuardedNode):
         """Drive the joints to where they are to be, and publish what sensors read."""
         q, dq = self._position, (self._commanded - self._position) / CONTROL_PERIOD_S
         self._position = self._commanded
-        reading = self._hardware.exchange(q, dq)
+        self._reading = self._hardware.exchange(q, dq)
+        self._publish()
+
+    def _publish(self) -> None:
+        """Publish the newest reading, under a new stamp."""
+        reading = self._reading
         self._ticks += 1
         left, right = reading.soles
         imu = np.concatenate([reading.orientation, reading.acceleration])
@@ -131,6 +137,7 @@ class HardwareNode(GuardedNode):
     ) -> Trigger.Response:
         self._hardware.load(self._standing)
         self._position = self._commanded = np.zeros(len(JOINT_NAMES))
+        self._tick()
         response.success = True
         return response
 
