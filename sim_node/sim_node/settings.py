@@ -145,14 +145,14 @@ class SimSettings(Settings):
         "robot: a real one, on ros2_control's topics",
         choices=(*ENGINES, ROBOT),
     )
+    limits: LimitSettings = section(LimitSettings)
+    disturbances: DisturbanceSettings = section(DisturbanceSettings)
     observations: str = setting(
         "truth",
         "",
         "truth: as the engine knows the robot; sensors: as its sensors do",
         choices=("truth", "sensors"),
     )
-    limits: LimitSettings = section(LimitSettings)
-    disturbances: DisturbanceSettings = section(DisturbanceSettings)
     sensors: SensorSettings = section(SensorSettings)
 
     @property
