@@ -141,7 +141,7 @@ HARDWARE_SOLES = tuple(
     Topic(
         f"/{side}_foot_force_torque_broadcaster/wrench",
         "geometry_msgs/msg/WrenchStamped",
-        meaning=f"floor on the {side} sole, at the point under the ankle [N], [N m]",
+        meaning=f"floor on the {side} sole at the point under the ankle [N], [N m]",
     )
     for side in ("left", "right")
 )
