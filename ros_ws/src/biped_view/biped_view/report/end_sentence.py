@@ -139,23 +139,29 @@ def _disturbed(record: WalkRecord, _: RunSettings) -> str:
 def _sensors_silent(record: WalkRecord, _: RunSettings) -> str:
     return (
         f"The robot's sensors fell silent {_when(record)}, {_where(record)}, and the "
-        "walk was given up. The learner had not failed."
+        "walk was given up. Neither robot nor learner had failed to walk."
     )
 
 
 def _sensors_invalid(record: WalkRecord, _: RunSettings) -> str:
     return (
         f"The robot's sensors read what cannot be {_when(record)}, {_where(record)}, "
-        "and the walk was given up. The learner had not failed."
+        "and the walk was given up. Neither robot nor learner had failed to walk."
     )
 
 
 def _emergency_stop(record: WalkRecord, _: RunSettings) -> str:
-    return f"The emergency stop was pressed {_when(record)}, {_where(record)}."
+    return (
+        f"The emergency stop was pressed {_when(record)}, {_where(record)}. Neither "
+        "robot nor learner had failed."
+    )
 
 
 def _not_standing(_: WalkRecord, __: RunSettings) -> str:
-    return "The robot did not stand on both feet when the walk was to begin."
+    return (
+        "The robot did not stand on both feet when the walk was to begin. Neither "
+        "robot nor learner had failed to walk."
+    )
 
 
 def _tilt(record: WalkRecord, settings: RunSettings) -> str:
