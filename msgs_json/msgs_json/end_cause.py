@@ -9,11 +9,16 @@ class EndCause(str, Enum):
     """Reasons for an episode's end.
 
     The first is success. The next two are the penalties of Table 1. The `ik_` and
-    `torque_` ones are the further failures that Section 4 names. `foot_through_floor`
-    and `physics_nan` mean that the physics itself can no longer be trusted. The last
-    four come from outside: in real time, a reference was not there when it was due, so
-    that nobody knows what the walk would have been; who guides the robot fell silent; a
-    user asked for it; or a stranger published what only one node may.
+    `torque_` ones are the further failures that Section 4 names. `tilt` is
+    the fall of a robot that is known by its sensors. `foot_through_floor` and
+    `physics_nan` mean that the physics itself can no longer be trusted. All others come
+    from outside: in real time, a reference was not there when it was due, so that
+    nobody knows what the walk would have been; who guides the robot fell silent; a user
+    asked for it; a stranger published what only one node may; a robot's sensors fell
+    silent, or read what cannot be; somebody pressed the emergency stop; or it did not
+    stand when its walk was to begin.
+
+    Memory files know a cause by its place in this order: new ones come last.
     """
 
     COMPLETED = "completed"
@@ -29,6 +34,11 @@ class EndCause(str, Enum):
     PEER_SILENT = "peer_silent"
     RESET = "reset"
     DISTURBED = "disturbed"
+    SENSORS_SILENT = "sensors_silent"
+    SENSORS_INVALID = "sensors_invalid"
+    EMERGENCY_STOP = "emergency_stop"
+    NOT_STANDING = "not_standing"
+    TILT = "tilt"
 
     @property
     def from_outside(self) -> bool:
@@ -41,5 +51,14 @@ class EndCause(str, Enum):
 
 
 _FROM_OUTSIDE = frozenset(
-    (EndCause.LATE, EndCause.PEER_SILENT, EndCause.RESET, EndCause.DISTURBED)
+    (
+        EndCause.LATE,
+        EndCause.PEER_SILENT,
+        EndCause.RESET,
+        EndCause.DISTURBED,
+        EndCause.SENSORS_SILENT,
+        EndCause.SENSORS_INVALID,
+        EndCause.EMERGENCY_STOP,
+        EndCause.NOT_STANDING,
+    )
 )

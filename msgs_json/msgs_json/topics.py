@@ -125,6 +125,37 @@ DIAGNOSTICS = Topic(
     depth=10,
     meaning="rates, lateness, deadlines missed, messages dropped and refused",
 )
+# A real robot's motors and sensors, as ros2_control's broadcasters and controllers name
+# theirs. Joint states with `use_local_topics`, since /joint_states is the walk's.
+HARDWARE_JOINTS = Topic(
+    "/joint_state_broadcaster/joint_states",
+    "sensor_msgs/msg/JointState",
+    meaning="12 joints: position [rad], velocity [rad/s], effort [N m]",
+)
+HARDWARE_IMU = Topic(
+    "/imu_sensor_broadcaster/imu",
+    "sensor_msgs/msg/Imu",
+    meaning="torso: orientation, specific force [m/s^2]",
+)
+HARDWARE_SOLES = tuple(
+    Topic(
+        f"/{side}_foot_force_torque_broadcaster/wrench",
+        "geometry_msgs/msg/WrenchStamped",
+        meaning=f"floor on the {side} sole at the point under the ankle [N], [N m]",
+    )
+    for side in ("left", "right")
+)
+HARDWARE_COMMANDS = Topic(
+    "/forward_position_controller/commands",
+    "std_msgs/msg/Float64MultiArray",
+    meaning="12 joint positions to be reached at the next tick [rad]",
+)
+EMERGENCY_STOP = Topic(
+    "/emergency_stop",
+    "std_msgs/msg/Bool",
+    meaning="true: the robot must not be driven",
+)
+
 CONTROL = (
     OBSERVATION,
     CORRECTION,

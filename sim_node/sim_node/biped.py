@@ -25,11 +25,11 @@ from msgs_json.segment import WaistSegment
 from sim_node.contact import NO_CONTACT, FloorContact
 from sim_node.control_tick import ControlTick, phase_flags
 from sim_node.disturbance import Disturbance, draw_disturbance
-from sim_node.engines import plant_of
-from sim_node.errors import SnapshotError, WorldClosedError
+from sim_node.errors import PlantStoppedError, SnapshotError, WorldClosedError
 from sim_node.joint_references import JointReferences, solve, standing
 from sim_node.limit_watch import LimitCounts, LimitWatch
 from sim_node.physics import Array
+from sim_node.plant import make_plant
 from sim_node.settings import SimSettings
 from sim_node.tick_sums import TickRows
 
@@ -106,7 +106,7 @@ class SimulatedBiped:
         self._start = start
         sizes = settings.disturbances
         torque_limits_nm = robot.torque_limit_nm * sizes.torque_limit_factor
-        self.world = plant_of(settings.engine)(robot, sizes.friction, torque_limits_nm)
+        self.world = make_plant(robot, settings, torque_limits_nm, rng)
         self._open = True
         self._noise_sizes = np.array(
             [
@@ -142,14 +142,19 @@ class SimulatedBiped:
         a walk that ended from outside the disturbances are the same as in it.
         """
         self._check_open()
-        self.world.load(self._standing)
+        end_cause = None
+        try:
+            self.world.load(self._standing)
+        except PlantStoppedError as stopped:
+            end_cause = stopped.cause
         disturbances = self.settings.disturbances
         chance: Mapping[str, Any] = {}
-        if disturbances.random:
+        if self.settings.random:
             last = self._watch
             if last.end_cause is not None and last.end_cause.from_outside:
                 self._rng.bit_generator.state = last.chance
             chance = self._rng.bit_generator.state
+        if disturbances.random:
             self._disturbance = draw_disturbance(
                 disturbances, len(LINK_NAMES), self._rng
             )
@@ -161,6 +166,7 @@ class SimulatedBiped:
             clock_ticks=self._watch.clock_ticks + 1,
             contact=self._standing_contact,
             waist_velocity=velocity[:2],
+            end_cause=end_cause,
             chance=chance,
         )
         self._references = standing(self._start)
@@ -238,9 +244,13 @@ class SimulatedBiped:
             if push.push_from_tick <= watch.control_tick < push.push_to_tick:
                 world.push(push.push_force_n)
             measured = joints[row - first]
-            contact = world.step(references.q[row], references.dq[row], measured)
-            row += 1
             watch.clock_ticks += 1
+            try:
+                contact = world.step(references.q[row], references.dq[row], measured)
+            except PlantStoppedError as stopped:
+                watch.end_cause = stopped.cause
+                break
+            row += 1
             watch.control_tick += 1
             if not contact.loaded:
                 contact = contact.holding(watch.contact)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from biped_common.errors import BipedError
+from msgs_json.end_cause import EndCause
 
 
 class SimulationError(BipedError):
@@ -19,3 +20,12 @@ class WorldClosedError(SimulationError):
 
 class SnapshotError(SimulationError):
     """A snapshot belongs to another world, or was released."""
+
+
+class PlantStoppedError(SimulationError):
+    """A plant cannot go on; the walk ends by its cause."""
+
+    def __init__(self, cause: EndCause) -> None:
+        """Say why."""
+        super().__init__(f"the plant stopped: {cause}")
+        self.cause = cause

@@ -35,7 +35,8 @@ from sim_node.pace_watch import PaceWatch
 from sim_node.pilot import Pilot, check_stance
 from sim_node.planned_walk import PlannedWalk
 from sim_node.realtime import Punctuality, RealtimeLoop
-from sim_node.settings import SimNodeSettings
+from sim_node.sensed_world import SensedWorld
+from sim_node.settings import ROBOT, SimNodeSettings
 from sim_node.tick_publisher import TickPublisher
 
 NAME = topics.SIM_NODE
@@ -43,6 +44,7 @@ _WATCH_PERIOD_S = 0.1
 # After a stranger has left, until all have found each other again.
 _CALM_S = 0.5
 _PACE_REPORTS_S = 10.0
+_READY_REPORTS_S = 10.0
 # A push that a user asks for: on the torso's CoM, sideways.
 _PUSH_FORCE_N = 20.0
 _PUSH_TICKS = 50
@@ -65,7 +67,8 @@ class SimNode(GuardedNode):
         claim_processor(self, settings.processor)
         self._settings = settings
         self._robot = Robot(settings.robot)
-        plant_of(settings.sim.engine)  # one that is missing is refused here
+        if settings.sim.engine != ROBOT:
+            plant_of(settings.sim.engine)  # one that is missing is refused here
         self._rng = np.random.default_rng(robot_stream(settings.seed))
         self._walk: PlannedWalk | None = None
         self._pilot: Pilot | None = None
@@ -215,7 +218,8 @@ class SimNode(GuardedNode):
     def _begin(self) -> None:
         """Begin the next walk, unless somebody would not follow it from its start."""
         calm_s = time.monotonic() - self._disturbed_at
-        if self._disturbed() or calm_s < _CALM_S or not self._connected():
+        in_order = self._connected() and self._ready()
+        if self._disturbed() or calm_s < _CALM_S or not in_order:
             self._offered = False  # until `_watch_peers` finds all in order
             return
         self._offered = True
@@ -257,6 +261,12 @@ class SimNode(GuardedNode):
             return
         if not self._offered:
             self._begin()
+        if not self._offered and self._connected() and not self._ready():
+            self._heard = time.monotonic()  # nobody else is to blame
+            text = "no walk can begin before somebody calls /robot_hardware/begin"
+            self.get_logger().info(text, throttle_duration_sec=_READY_REPORTS_S)
+            self.remark(DiagnosticStatus.OK, "robot", text)
+            return
         silent_s = time.monotonic() - self._heard
         if silent_s < self._settings.timeout_s:
             return
@@ -304,6 +314,13 @@ class SimNode(GuardedNode):
         return (
             self._ticks.listeners() >= recorders and listeners >= len(peers) + recorders
         )
+
+    def _ready(self) -> bool:
+        """Return whether the robot is on its feet; a real one is put there by hand."""
+        if self._pilot is None:
+            return False
+        world = self._pilot.biped.world
+        return not isinstance(world, SensedWorld) or world.hardware.ready()
 
     def _silent_peer(self) -> str:
         for topic, peer in (
@@ -356,6 +373,8 @@ class SimNode(GuardedNode):
         """
         if self._pilot is None or not self._pilot.walking:
             response.message = "no walk to push"
+        elif self._settings.sim.engine == ROBOT:
+            response.message = "a real robot is pushed by hand"
         elif not (self._frozen and self._frozen_walk):
             response.message = (
                 "this walk is learned from; freeze the learner, and push the next one"

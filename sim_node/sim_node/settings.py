@@ -9,6 +9,10 @@ from biped_description.settings import RobotSettings
 from biped_ros.processor import ProcessorSettings
 from sim_node.engines import ENGINES
 
+ROBOT = "robot"
+"""Instead of an engine."""
+_FELT_BY_NO_ROBOT = ("friction", "torque_limit_factor", "mass_error", "push_force_n")
+
 
 @dataclass(frozen=True)
 class LimitSettings(Settings):
@@ -77,21 +81,98 @@ class DisturbanceSettings(Settings):
 
 
 @dataclass(frozen=True)
+class SensorSettings(Settings):
+    """How well a robot's sensors know it, where observations come from them.
+
+    Standard deviations of white noise, per control tick. The defaults are of the order
+    of 14-bit encoders, an industrial IMU and six-axis sensors for a robot of 30 kg.
+    """
+
+    delay_ticks: int = setting(
+        1, "control ticks", "age of the readings that are there", lower=0, upper=10
+    )
+    joint_position_noise_rad: float = setting(
+        2e-4, "rad", "noise on joint positions", lower=0.0
+    )
+    joint_velocity_noise_rad_s: float = setting(
+        0.02, "rad/s", "noise on joint velocities", lower=0.0
+    )
+    joint_torque_noise_nm: float = setting(
+        0.5, "N m", "noise on joint torques", lower=0.0
+    )
+    orientation_noise_rad: float = setting(
+        0.002, "rad", "noise on the torso's orientation, about each axis", lower=0.0
+    )
+    acceleration_noise_m_s2: float = setting(
+        0.05, "m/s^2", "noise on the torso's acceleration", lower=0.0
+    )
+    force_noise_n: float = setting(
+        1.0, "N", "noise on the vertical force on a sole", lower=0.0
+    )
+    moment_noise_nm: float = setting(
+        0.1, "N m", "noise on the moments on a sole", lower=0.0
+    )
+    tilt_limit_rad: float = setting(
+        0.3, "rad", "tilt of the torso at which a walk ends", above=0.0, upper=1.5
+    )
+    timeout_s: float = setting(
+        0.05, "s", "silence of a real robot's sensors at which a walk ends", above=0.0
+    )
+
+    @property
+    def noisy(self) -> bool:
+        """Whether chance has a part in the readings."""
+        sizes = (
+            self.joint_position_noise_rad,
+            self.joint_velocity_noise_rad_s,
+            self.joint_torque_noise_nm,
+            self.orientation_noise_rad,
+            self.acceleration_noise_m_s2,
+            self.force_noise_n,
+            self.moment_noise_nm,
+        )
+        return any(size > 0.0 for size in sizes)
+
+
+@dataclass(frozen=True)
 class SimSettings(Settings):
     """The simulated robot."""
 
     engine: str = setting(
         "pybullet",
         "",
-        "pybullet: full physics; kinematic: joints on their references, no contact",
-        choices=tuple(ENGINES),
+        "pybullet: full physics; kinematic: joints on their references, no contact; "
+        "robot: a real one, on ros2_control's topics",
+        choices=(*ENGINES, ROBOT),
     )
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
+    observations: str = setting(
+        "truth",
+        "",
+        "truth: as the engine knows the robot; sensors: as its sensors do",
+        choices=("truth", "sensors"),
+    )
+    sensors: SensorSettings = section(SensorSettings)
+
+    @property
+    def random(self) -> bool:
+        """Whether chance has a part in the walks, so that no two are the same."""
+        sensed = self.observations == "sensors" and self.sensors.noisy
+        return self.disturbances.random or sensed or self.engine == ROBOT
 
     def check_together(self) -> None:
         """Refuse disturbances that would have no effect."""
-        for name in ENGINES[self.engine].unfelt:
+        if self.engine == ROBOT and self.observations != "sensors":
+            raise SettingsError(
+                "observations",
+                self.observations,
+                "must be sensors with engine = robot",
+            )
+        unfelt = (
+            _FELT_BY_NO_ROBOT if self.engine == ROBOT else ENGINES[self.engine].unfelt
+        )
+        for name in unfelt:
             value = getattr(self.disturbances, name)
             nominal = getattr(DisturbanceSettings(), name)
             if value != nominal:
@@ -154,3 +235,26 @@ class SimNodeSettings(Settings):
         lower=0,
         upper=10,
     )
+
+
+@dataclass(frozen=True)
+class HardwareNodeSettings(Settings):
+    """All of the node that plays a robot's motors and sensors."""
+
+    robot: RobotSettings = section(RobotSettings)
+    sim: SimSettings = section(SimSettings)
+    seed: int = setting(0, "", "of the sensors' noise", lower=0, upper=2**63 - 1)
+    pace: str = setting(
+        "realtime",
+        "",
+        "realtime: 500 Hz, commands or not; lockstep: a tick for every command",
+        choices=("realtime", "lockstep"),
+    )
+    realtime_factor: float = setting(
+        1.0, "", "simulated seconds per second, in real time", above=0.0, upper=20.0
+    )
+
+    def check_together(self) -> None:
+        """Refuse to play a real robot on a real robot."""
+        if self.sim.engine == ROBOT:
+            raise SettingsError("sim.engine", ROBOT, "must be one that simulates")

@@ -21,6 +21,11 @@ def test_these_are_all_the_words():
         "peer_silent",
         "reset",
         "disturbed",
+        "sensors_silent",
+        "sensors_invalid",
+        "emergency_stop",
+        "not_standing",
+        "tilt",
     ]
 
 
@@ -30,6 +35,10 @@ def test_these_come_from_outside():
         "peer_silent",
         "reset",
         "disturbed",
+        "sensors_silent",
+        "sensors_invalid",
+        "emergency_stop",
+        "not_standing",
     }
 
 

@@ -57,6 +57,7 @@ PENALTY_OF = {
     EndCause.IK_JOINT_LIMIT: 0,
     EndCause.TORQUE_SATURATION: 0,
     EndCause.FEET_UNLOADED: 0,
+    EndCause.TILT: 0,
 }
 N_PENALTIES = 3  # Table 1, the additional penalty included
 

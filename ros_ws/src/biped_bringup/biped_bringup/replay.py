@@ -99,7 +99,7 @@ class ReplayingWalker(Walker):
         Raises:
             ValueError: chance has a part in the walks.
         """
-        if settings.sim.disturbances.random:
+        if settings.sim.random:
             raise ValueError("walks with random disturbances cannot be replayed")
         super().__init__(settings, rng)
         self._memory_bytes = memory_bytes

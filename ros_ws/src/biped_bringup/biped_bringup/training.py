@@ -68,7 +68,7 @@ class TrainingRun:
         self._robot_rng = np.random.default_rng(robot_stream(seed))
         self.replay_off: str | None = None
         """Why walks are not replayed, in words; None where they are."""
-        if settings.sim.disturbances.random:
+        if settings.sim.random:
             self.replay_off = "random disturbances make every walk different"
         elif replay_bytes == 0:
             self.replay_off = "as asked"

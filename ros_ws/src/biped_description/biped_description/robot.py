@@ -171,7 +171,7 @@ class Robot:
         Args:
             q: (n, 12) joint positions; the feet need not be flat. Axes are the torso's.
         """
-        positions, _ = self._foot_poses(q)
+        positions, _ = self.foot_poses(q)
         return positions[0], positions[1]
 
     def foot_orientations(self, q: ArrayLike) -> tuple[Array, Array]:
@@ -183,7 +183,7 @@ class Robot:
         Args:
             q: (n, 12) joint positions.
         """
-        _, orientations = self._foot_poses(q)
+        _, orientations = self.foot_poses(q)
         return orientations[0], orientations[1]
 
     def link_com_positions(self, waist: ArrayLike, q: ArrayLike) -> Array:
@@ -249,7 +249,7 @@ class Robot:
             f"{geometry.reach_max:.6g} m"
         )
 
-    def _foot_poses(self, q: ArrayLike) -> tuple[Array, Array]:
+    def foot_poses(self, q: ArrayLike) -> tuple[Array, Array]:
         """Return positions (2, n, 3) and orientations (2, n, 3, 3) of both feet."""
         q = _rows("q", q, len(JOINT_NAMES))
         positions = np.empty((2, len(q), 3))

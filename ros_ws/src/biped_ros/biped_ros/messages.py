@@ -59,6 +59,26 @@ def point_template() -> MessageTemplate:
     return template.value().value().constant(0.0).finished()
 
 
+def imu_template(frame: str) -> MessageTemplate:
+    """Return an IMU without a rate gyro: orientation (x, y, z, w), specific force."""
+    template = MessageTemplate(stamped=True).text(frame)
+    for numbers, known in ((4, True), (3, False), (3, True)):
+        for _ in range(numbers):
+            template.value() if known else template.constant(0.0)
+        # Covariance: zeros for one that is not known, -1 for numbers that are not.
+        template.constant(0.0 if known else -1.0)
+        for _ in range(8):
+            template.constant(0.0)
+    return template.finished()
+
+
+def wrench_template(frame: str) -> MessageTemplate:
+    """Return a sole's wrench: force along z, moments about x and y."""
+    template = MessageTemplate(stamped=True).text(frame)
+    template.constant(0.0).constant(0.0).value()
+    return template.value().value().constant(0.0).finished()
+
+
 def correction_template() -> MessageTemplate:
     """Return a correction: dx and dy."""
     template = MessageTemplate(stamped=True).text(WORLD_FRAME)

@@ -106,7 +106,7 @@ class SearchContestant:
             SettingsError: chance has a part in the walks, so that a plan does not say
                 how far it walks.
         """
-        if settings.sim.disturbances.random:
+        if settings.sim.random:
             raise SettingsError(
                 "sim.disturbances",
                 to_mapping(settings.sim.disturbances),

@@ -136,6 +136,41 @@ def _disturbed(record: WalkRecord, _: RunSettings) -> str:
     )
 
 
+def _sensors_silent(record: WalkRecord, _: RunSettings) -> str:
+    return (
+        f"The robot's sensors fell silent {_when(record)}, {_where(record)}, and the "
+        "walk was given up. Neither robot nor learner had failed to walk."
+    )
+
+
+def _sensors_invalid(record: WalkRecord, _: RunSettings) -> str:
+    return (
+        f"The robot's sensors read what cannot be {_when(record)}, {_where(record)}, "
+        "and the walk was given up. Neither robot nor learner had failed to walk."
+    )
+
+
+def _emergency_stop(record: WalkRecord, _: RunSettings) -> str:
+    return (
+        f"The emergency stop was pressed {_when(record)}, {_where(record)}. Neither "
+        "robot nor learner had failed."
+    )
+
+
+def _not_standing(_: WalkRecord, __: RunSettings) -> str:
+    return (
+        "The robot did not stand on both feet when the walk was to begin. Neither "
+        "robot nor learner had failed to walk."
+    )
+
+
+def _tilt(record: WalkRecord, settings: RunSettings) -> str:
+    return (
+        f"The torso tilted by more than {settings.sim.sensors.tilt_limit_rad:g} rad "
+        f"{_when(record)}, {_where(record)}: the robot was falling."
+    )
+
+
 _SENTENCES: Mapping[EndCause, Callable[[WalkRecord, RunSettings], str]] = {
     EndCause.COMPLETED: _completed,
     EndCause.ZMP_ERROR: _zmp_error,
@@ -150,6 +185,11 @@ _SENTENCES: Mapping[EndCause, Callable[[WalkRecord, RunSettings], str]] = {
     EndCause.PEER_SILENT: _peer_silent,
     EndCause.RESET: _reset,
     EndCause.DISTURBED: _disturbed,
+    EndCause.SENSORS_SILENT: _sensors_silent,
+    EndCause.SENSORS_INVALID: _sensors_invalid,
+    EndCause.EMERGENCY_STOP: _emergency_stop,
+    EndCause.NOT_STANDING: _not_standing,
+    EndCause.TILT: _tilt,
 }
 
 

@@ -1,0 +1,138 @@
+"""Learned walks of a robot that is known by its sensors only.
+
+    python -m biped_lab.sensed_walks --seeds 10
+
+Learns the walk from the truth, and once more from sensors with noise and one tick of
+delay, on the same seeds; then walks what was learned, frozen, with ever worse sensors
+once per seed. Prints a table in Markdown. Of the walks whose learning came to its end:
+how many were completed; in how many of these the true ZMP stayed within the limit,
+which the robot judges by its sensors; and median and largest of its worst errors.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from contextlib import closing
+from typing import Final
+
+import numpy as np
+
+from biped_bringup.run_settings import (
+    PRESETS,
+    RunSettings,
+    changed_settings,
+    load_settings,
+)
+from biped_bringup.walker import Walker
+from biped_common.command_line import positive
+from biped_common.seeds import robot_stream
+from biped_common.settings import to_mapping
+from biped_lab.robustness import Learned, learn
+from sim_node.control_tick import ControlTick
+from sim_node.sensed_world import SensedWorld
+from sim_node.settings import SensorSettings
+from sim_node.simulated_hardware import SimulatedHardware
+
+_SENSORS = "sim.observations=sensors"
+
+
+def _noise(times: float) -> tuple[str, ...]:
+    """Return changes that make all noise so many times that of the settings."""
+    return tuple(
+        f"sim.sensors.{name}={times * value:.6f}"
+        for name, value in to_mapping(SensorSettings()).items()
+        if "_noise_" in name
+    )
+
+
+SENSES: Final = {
+    "the truth": (),
+    "sensors without noise or delay": (
+        _SENSORS, *_noise(0.0), "sim.sensors.delay_ticks=0",
+    ),
+    "one tick of delay": (_SENSORS, *_noise(0.0)),
+    "noise": (_SENSORS, "sim.sensors.delay_ticks=0"),
+    "noise, one tick of delay": (_SENSORS,),
+    "the same, ended at 68 mm": (_SENSORS, "sim.limits.zmp_error_m=0.068"),
+    "noise, three ticks of delay": (_SENSORS, "sim.sensors.delay_ticks=3"),
+    "three times the noise, one tick of delay": (_SENSORS, *_noise(3.0)),
+}  # fmt: skip
+
+
+def walked(
+    learned: Learned, settings: RunSettings, seed: int, changes: tuple[str, ...]
+) -> tuple[bool, float]:
+    """Walk what was learned once.
+
+    Returns:
+        Whether it came to the end, and the largest norm of the true ZMP error [m].
+    """
+    worst = 0.0
+
+    def look(tick: ControlTick) -> None:
+        nonlocal worst
+        world, felt = walker.biped.world, tick.contact
+        if isinstance(world, SensedWorld):
+            if not isinstance(world.hardware, SimulatedHardware):
+                raise TypeError("only a simulated robot knows its true ZMP")
+            felt = world.hardware.contact
+        if felt.loaded:
+            x, y = tick.zmp_reference
+            worst = max(worst, math.hypot(felt.zmp_x_m - x, felt.zmp_y_m - y))
+
+    walker = Walker(
+        changed_settings(settings, changes=changes),
+        np.random.default_rng(robot_stream(seed)),
+        look,
+    )
+    with closing(walker):
+        return walker.walk(learned()).completed, worst
+
+
+def cell(outcomes: list[tuple[bool, float]], limit_m: float) -> str:
+    """Return how walks went, in words."""
+    peaks = [worst for completed, worst in outcomes if completed]
+    if not peaks:
+        return "0"
+    within = sum(worst < limit_m for worst in peaks)
+    median_mm, most_mm = 1000 * np.median(peaks), 1000 * max(peaks)
+    return f"{len(peaks)} ({within}), {median_mm:.1f}, {most_mm:.1f} mm"
+
+
+def main() -> int:
+    """Learn, walk and print."""
+    parser = argparse.ArgumentParser(
+        prog="python -m biped_lab.sensed_walks", description=__doc__.splitlines()[0]
+    )
+    parser.add_argument("--preset", choices=PRESETS, default="directed")
+    parser.add_argument("--seeds", type=positive, default=10, metavar="N")
+    parser.add_argument("--first", type=positive, default=8101, metavar="SEED")
+    options = parser.parse_args()
+    seeds = range(options.first, options.first + options.seeds)
+    columns: dict[str, list[str]] = {}
+    for name, changes in (("truth", ()), ("sensors", (_SENSORS,))):
+        settings = load_settings(options.preset, changes=changes)
+        found = {seed: learn(settings, seed) for seed in seeds}
+        learned = {seed: walk for seed, walk in found.items() if walk is not None}
+        print(f"{name}: {len(learned)} learned", file=sys.stderr, flush=True)
+        limit_m = settings.sim.limits.zmp_error_m
+        truth = load_settings(options.preset)
+        columns[f"learned from the {name} ({len(learned)} of {len(seeds)})"] = [
+            cell([walked(w, truth, n, worse) for n, w in learned.items()], limit_m)
+            for worse in SENSES.values()
+        ]
+    print(_line(["walked by", *columns]))
+    print(_line(["---"] * (1 + len(columns))))
+    for label, *cells in zip(SENSES, *columns.values(), strict=True):
+        print(_line([label, *cells]))
+    return 0
+
+
+def _line(cells: list[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

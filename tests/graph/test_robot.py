@@ -1,0 +1,187 @@
+"""A robot behind ros2_control's topics, played by a simulation that tells no more."""
+
+import itertools
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+from tests.conftest import COMMAND
+from tests.robots import SHIPPED
+
+from biped_bringup.run_settings import load_settings
+from biped_bringup.training import TrainingRun
+from biped_description.robot import Robot
+from msgs_json import topics
+from msgs_json.end_cause import EndCause
+from sim_node.biped import SimulatedBiped
+from sim_node.settings import SensorSettings, SimSettings
+from trajectory_node.settings import CorrectionSettings, GaitSettings
+from trajectory_node.waist_reference import WaistReference
+
+TIMEOUT_S = 120.0
+LOCKSTEP = ("--ros-args", "-p", "pace:=lockstep")
+SENSED = "sim.observations=sensors"
+
+
+class Person:
+    """Puts the robot on its feet, asks for walks, and can stop it at once."""
+
+    def __init__(self, domain):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=domain)
+        self.node = rclpy.create_node("person", context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        name = topics.EMERGENCY_STOP.name
+        self.button = self.node.create_publisher(Bool, name, 10)
+
+    def call(self, service):
+        client = self.node.create_client(Trigger, service)
+        assert client.wait_for_service(TIMEOUT_S)
+        future = client.call_async(Trigger.Request())
+        self.executor.spin_until_future_complete(future, TIMEOUT_S)
+        return future.result()
+
+    def have_it_walk(self):
+        """Ask for a walk until it is granted."""
+        end = time.monotonic() + TIMEOUT_S
+        while not (answer := self.call("/robot_hardware/begin")).success:
+            assert time.monotonic() < end, answer.message
+            time.sleep(0.1)
+
+    def press(self, pressed):
+        end = time.monotonic() + TIMEOUT_S
+        while self.button.get_subscription_count() == 0:
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        self.button.publish(Bool(data=pressed))
+
+    def close(self):
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture
+def person(domain):
+    made = Person(domain)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def hardware(domain):
+    """Play the robot: time goes on with every command."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "sim_node.hardware_node", *LOCKSTEP],
+        env=os.environ | {"ROS_DOMAIN_ID": str(domain)},
+    )
+    yield process
+    process.kill()
+    process.wait(10.0)
+
+
+@pytest.fixture
+def new_biped(domain, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    settings = SimSettings(
+        engine="robot",
+        observations="sensors",
+        sensors=SensorSettings(timeout_s=3.0),
+    )
+    stance = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings()).stance()
+    made = []
+
+    def make(robot):
+        made.append(SimulatedBiped(robot, settings, stance, np.random.default_rng(0)))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+def segments():
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings())
+    return (reference.segment(np.zeros(2)) for _ in itertools.count())
+
+
+def begin(biped, person, number):
+    """Begin a walk, as a person asks for it meanwhile."""
+    assert not biped.world.hardware.ready()
+    asks = threading.Thread(target=person.have_it_walk)
+    asks.start()
+    observation = biped.begin_walk(number)
+    asks.join()
+    return observation
+
+
+def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
+    biped = new_biped(SHIPPED)
+    observation = begin(biped, person, 1)
+    assert observation.end_cause is None
+    static = segments()
+    for _ in range(30):
+        observation = biped.execute(next(static))
+    # It stood on straight legs; it has bent them and begun to shift its weight.
+    assert (observation.control_tick, observation.end_cause) == (300, None)
+    assert observation.worst_zmp_error_m < 0.03
+    assert biped.world.waist().position[2] == pytest.approx(0.475, abs=0.002)
+
+    person.press(True)
+    while biped.end_cause is None:
+        observation = biped.execute(next(static))
+    assert observation.end_cause is EndCause.EMERGENCY_STOP
+    refused = person.call("/robot_hardware/begin")
+    assert (refused.success, refused.message) == (
+        False,
+        "the emergency stop is pressed",
+    )
+
+    person.press(False)
+    assert person.call("/simulated_hardware/reset").success
+    assert begin(biped, person, 2).end_cause is None
+    static = segments()
+    assert biped.execute(next(static)).end_cause is None
+
+    hardware.kill()
+    assert biped.execute(next(static)).end_cause is EndCause.SENSORS_SILENT
+
+
+def test_a_robot_that_does_not_stand_does_not_walk(new_biped, hardware, person):
+    # By its table it weighs far more than the soles feel: somebody holds it up.
+    biped = new_biped(Robot(replace(SHIPPED.settings, torso_mass_kg=100.0)))
+    assert begin(biped, person, 1).end_cause is EndCause.NOT_STANDING
+
+
+@pytest.mark.thorough
+def test_the_learned_walk_holds_on_the_graph(domain, tmp_path, hardware, person):
+    run = TrainingRun(load_settings("directed", changes=[SENSED]), seed=5)
+    run.run(200, False, lambda _: True)
+    assert run.learned
+    run.save(tmp_path / "memory.npz")
+    run.close()
+    changes = ("sim.engine=robot", "sim.sensors.timeout_s=3")
+    up = subprocess.Popen(
+        [*COMMAND, "up", "--greedy", "--no-view", "--plain", "--json"]
+        + ["--record", "none", "--domain", str(domain), "--out", str(tmp_path)]
+        + [word for change in changes for word in ("--set", change)],
+        stdout=subprocess.PIPE,
+    )
+    try:
+        person.have_it_walk()
+        out, _ = up.communicate(timeout=10 * TIMEOUT_S)
+    finally:
+        up.kill()
+        up.wait(10.0)
+    walk = json.loads(out)
+    assert up.returncode == 0, walk
