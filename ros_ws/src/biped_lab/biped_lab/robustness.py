@@ -87,7 +87,7 @@ def search(settings: RunSettings, seed: int) -> Learned | None:
     learner = replace(settings.learner, schedule=whole)
     task = WalkTask(learner, settings.gait.walk_ticks)
     # Where chance has a part in the walks, none is like another.
-    replays = not settings.sim.disturbances.random
+    replays = not settings.sim.random
     with closing((ReplayingWalker if replays else Walker)(settings, rng)) as walker:
         for episode in range(MOST_EPISODES):
             chosen = space.nearest(searcher.ask(space.points))

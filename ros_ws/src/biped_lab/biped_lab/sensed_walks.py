@@ -88,7 +88,7 @@ def walked(
         look,
     )
     with closing(walker):
-        return walker.walk(learned()).completed, worst
+        return walker.walk(learned.walk()).completed, worst
 
 
 def cell(outcomes: list[tuple[bool, float]], limit_m: float) -> str:
