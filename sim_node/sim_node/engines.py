@@ -21,6 +21,7 @@ class Engine(NamedTuple):
 
 ENGINES: Final = {
     "pybullet": Engine("sim_node.pybullet_world", "PyBulletWorld"),
+    "mujoco": Engine("sim_node.mujoco_world", "MuJoCoWorld"),
     "kinematic": Engine(
         "sim_node.kinematic_world",
         "KinematicWorld",
