@@ -15,13 +15,15 @@ class Engine(NamedTuple):
     module: str
     plant: str
     """Name of its class in the module, a `Physics`."""
+    extra: str = ""
+    """Of the project, that brings what the module imports."""
     unfelt: tuple[str, ...] = ()
     """Disturbances that have no effect on it."""
 
 
 ENGINES: Final = {
     "pybullet": Engine("sim_node.pybullet_world", "PyBulletWorld"),
-    "mujoco": Engine("sim_node.mujoco_world", "MuJoCoWorld"),
+    "mujoco": Engine("sim_node.mujoco_world", "MuJoCoWorld", extra="mujoco"),
     "kinematic": Engine(
         "sim_node.kinematic_world",
         "KinematicWorld",
@@ -40,8 +42,9 @@ def plant_of(engine: str) -> type[Physics]:
     try:
         module = importlib.import_module(found.module)
     except ImportError as error:
+        needs = f"it needs pip install 'biped[{found.extra}]'; " if found.extra else ""
         raise EngineMissingError(
-            f"sim.engine = {engine!r}: cannot be loaded, {error}; "
+            f"sim.engine = {engine!r}: cannot be loaded, {error}; {needs}"
             "kinematic needs nothing"
         ) from error
     plant: type[Physics] = getattr(module, found.plant)

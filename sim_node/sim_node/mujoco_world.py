@@ -1,15 +1,15 @@
-"""Full physics by MuJoCo: a floor and the biped, with servos as constraints.
+"""Full physics by MuJoCo: a floor and the biped.
 
-A servo is an equality constraint on its joint: it asks for the velocity that brings the
-joint to its next reference, and is solved together with the contacts. Where this takes
-more than the servo has, the tick is solved again with that joint driven by its limit.
+A constraint of MuJoCo's asks for an acceleration, and gets the nearest that there is.
+Servos and soles ask here for what they ask for in the Bullet world: the velocity that
+leads to the next reference, by no more than the torque limit, and none into the floor.
 """
 
 from __future__ import annotations
 
 import itertools
 import xml.etree.ElementTree as ET
-from typing import Final
+from typing import Any, Final
 
 import mujoco
 import numpy as np
@@ -24,19 +24,14 @@ from sim_node.errors import SnapshotError
 from sim_node.physics import Array, Physics, Vector, WaistState
 
 _N_JOINTS: Final = len(JOINT_NAMES)
-_FREE_Q, _FREE_V = 7, 6
-"""Positions and velocities of the torso come first."""
 _KEPT: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
-# The share of a position error that a servo takes away in a tick, as Bullet's do.
-_POSITION_GAIN: Final = 0.1
-# A constraint gives way by one part in so many; MuJoCo's are never quite stiff.
-_STIFF: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-_CONTACT = (0.98, 0.99, 0.001, 0.5, 2.0)
-_CONTACT_TIME_S, _CONTACT_DAMPING = 0.004, 1.0
-"""Chosen on the static walk without limit, next to Bullet: ZMPs 3.2 mm apart (root mean
-square), 23 of 5,625 ticks more than 15 mm, all of them when a foot touches down. Softer,
-soles sink and feet touch down early; stiffer, contacts and servos fight each other in
-double support, and the ZMP chatters."""
+# Shares of an error that are taken back in a tick, as in the Bullet world.
+_POSITION_GAIN, _PENETRATION_GAIN = 0.1, 0.2
+_NEAR_M: Final = 5e-3
+"""A corner of a sole that is no higher is kept from entering the floor. MuJoCo's own
+contact acts on what has entered: feet land by impacts, and unloaded corners rattle."""
+# Constraints give way by one part in 10,000, the least there is, and in 1,000.
+_SERVO_IMPEDANCE, _CONTACT_IMPEDANCE = 0.9999, 0.999
 
 
 class MuJoCoWorld(Physics):
@@ -44,23 +39,21 @@ class MuJoCoWorld(Physics):
 
     def __init__(self, robot: Robot, friction: float, torque_limits_nm: Array) -> None:
         """Build the model, with the robot standing at the origin."""
-        self._model = _model(robot, friction)
-        self._data = mujoco.MjData(self._model)
-        self._torque_limits_nm = torque_limits_nm
-        model = self._model
+        self._model = model = _model(robot, friction)
+        self._data = mujoco.MjData(model)
         self._torso = model.body(TORSO).id
-        links = [model.body(name).id for name in LINK_NAMES]
-        self._links = np.array(links)
+        self._links = np.array([model.body(name).id for name in LINK_NAMES])
         self._left_sole = int(model.body_geomadr[model.body(CONTACT_LINKS[0]).id])
-        dofs = [model.joint(name).dofadr[0] for name in JOINT_NAMES]
-        self._dofs = np.array(dofs)
-        self._positions = self._dofs + (_FREE_Q - _FREE_V)
-        self._servos = np.array([model.equality(name).id for name in JOINT_NAMES])
+        joints = [model.joint(name) for name in JOINT_NAMES]
+        self._positions = np.array([joint.qposadr[0] for joint in joints])
+        self._dofs = np.array([joint.dofadr[0] for joint in joints])
+        # A servo is dry friction that brakes towards a velocity of its own.
+        model.dof_frictionloss[self._dofs] = torque_limits_nm
         self._mass = model.body_mass[self._links].copy()
         self._inertia = model.body_inertia[self._links].copy()
         self._handles = itertools.count()
         self._kept: dict[int, Array] = {}
-        self._state = np.empty(mujoco.mj_stateSize(model, _KEPT))
+        self._state_size = mujoco.mj_stateSize(model, _KEPT)
 
     def set_mass_factors(self, factors: Array) -> None:
         """Scale the nominal mass and inertia of the (13,) links."""
@@ -84,26 +77,21 @@ class MuJoCoWorld(Physics):
     def step(self, q: Array, dq: Array, joints: Array) -> FloorContact:
         """Drive the joints for one control tick, and read the sensors."""
         model, data = self._model, self._data
-        # MuJoCo wants the acceleration  -b v - k (q - aim);  with b = 1 / dt it brings
-        # the velocity to k dt (aim - q), which is to be dq + gain (q_ref - q) / dt.
-        model.eq_data[self._servos, 0] = q + dq * (CONTROL_PERIOD_S / _POSITION_GAIN)
-        torques = self._solved()
-        limits = self._torque_limits_nm
-        over = np.abs(torques) > limits
-        if over.any():
-            data.eq_active[self._servos] = ~over
-            applied = np.where(over, np.copysign(limits, torques), 0.0)
-            data.qfrc_applied[self._dofs] = applied
-            torques = self._solved() + applied
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        servos = self._ask_servos(q, dq)
+        normals = self._ask_soles()
+        mujoco.mj_fwdActuation(model, data)
+        mujoco.mj_fwdAcceleration(model, data)
+        mujoco.mj_fwdConstraint(model, data)
         mujoco.mj_Euler(model, data)
-        if over.any():
-            data.eq_active[self._servos] = 1
-            data.qfrc_applied[self._dofs] = 0.0
-        data.xfrc_applied[self._torso, :3] = 0.0
+        data.xfrc_applied[self._torso] = 0.0
+        torques = np.zeros(model.nv)
+        torques[data.efc_id[servos]] = data.efc_force[servos]
         joints[:_N_JOINTS] = data.qpos[self._positions]
         joints[_N_JOINTS : 2 * _N_JOINTS] = data.qvel[self._dofs]
-        joints[2 * _N_JOINTS :] = torques
-        return self._contact()
+        joints[2 * _N_JOINTS :] = torques[self._dofs]
+        return self._floor_contact(data.efc_force[normals])
 
     # -- readings ------------------------------------------------------------------
 
@@ -122,9 +110,9 @@ class MuJoCoWorld(Physics):
 
     def save(self) -> int:
         """Keep the present state in memory; return its handle."""
-        handle = next(self._handles)
-        mujoco.mj_getState(self._model, self._data, self._state, _KEPT)
-        self._kept[handle] = self._state.copy()
+        handle, state = next(self._handles), np.empty(self._state_size)
+        mujoco.mj_getState(self._model, self._data, state, _KEPT)
+        self._kept[handle] = state
         return handle
 
     def load(self, handle: int) -> None:
@@ -141,40 +129,54 @@ class MuJoCoWorld(Physics):
         """Forget all kept states."""
         self._kept.clear()
 
-    def _solved(self) -> Array:
-        """Solve the tick; return the torques of the servos (12,)."""
-        model, data = self._model, self._data
-        mujoco.mj_forward(model, data)
-        torques = np.zeros(_N_JOINTS)
-        servos = data.efc_id[: data.ne] - self._servos[0]
-        torques[servos] = data.efc_force[: data.ne]
-        return torques
+    # -- constraints ---------------------------------------------------------------
 
-    def _contact(self) -> FloorContact:
+    def _ask_servos(self, q: Array, dq: Array) -> slice:
+        """Ask for the velocities that lead to the next references; return the rows.
+
+        A servo without torque has no row.
+        """
         data = self._data
-        if not data.ncon:
-            return FloorContact(0.0, 0.0, 0.0, 0.0, 0.0)
-        contact = data.contact
-        touching = contact.efc_address >= 0
-        forces = np.zeros(data.ncon)
-        forces[touching] = data.efc_force[contact.efc_address[touching]]
-        load = float(forces.sum())
-        left = float(forces[contact.geom[:, 1] == self._left_sole].sum())
-        penetration = max(0.0, -float(contact.dist.min()))
+        asked = np.zeros(self._model.nv)
+        error = q - data.qpos[self._positions]
+        asked[self._dofs] = dq + _POSITION_GAIN / CONTROL_PERIOD_S * error
+        rows = slice(data.nf)
+        missing = (asked - data.qvel)[data.efc_id[rows]]
+        data.efc_aref[rows] = missing / CONTROL_PERIOD_S
+        return rows
+
+    def _ask_soles(self) -> Any:
+        """Ask for velocities that keep soles from slipping and from entering the floor.
+
+        Returns:
+            The row of each contact point's normal; two along the floor follow it.
+        """
+        data = self._data
+        first, normals = data.nf, data.contact.efc_address
+        height = data.contact.dist
+        missing = -data.efc_vel[first : data.nefc]
+        share = np.where(height > 0.0, 1.0, _PENETRATION_GAIN)
+        missing[normals - first] -= share * height / CONTROL_PERIOD_S
+        data.efc_aref[first : data.nefc] = missing / CONTROL_PERIOD_S
+        return normals
+
+    def _floor_contact(self, forces_n: Array) -> FloorContact:
+        """Sum up contact points: ZMP = sum(f p) / sum(f)."""
+        contact = self._data.contact
+        penetration = max(0.0, -float(contact.dist.min(initial=0.0)))
+        load = float(forces_n.sum())
         if not load > 0.0:
             return FloorContact(0.0, 0.0, 0.0, 0.0, penetration)
-        x, y, _ = (forces @ contact.pos / load).tolist()
+        left = float(forces_n[contact.geom[:, 1] == self._left_sole].sum())
+        x, y, _ = (forces_n @ contact.pos / load).tolist()
         return FloorContact(x, y, left, load - left, penetration)
 
 
 def _model(robot: Robot, friction: float) -> mujoco.MjModel:
     """Return floor and robot as MuJoCo compiles them."""
     urdf = ET.fromstring(robot.urdf)
-    extension = ET.SubElement(urdf, "mujoco")
-    ET.SubElement(
-        extension, "compiler", fusestatic="false", discardvisual="true",
-        balanceinertia="false",
-    )  # fmt: skip
+    compiler = {"fusestatic": "false", "discardvisual": "true"}
+    ET.SubElement(ET.SubElement(urdf, "mujoco"), "compiler", compiler)
     spec = mujoco.MjSpec.from_string(ET.tostring(urdf, encoding="unicode"))
     options = spec.option
     options.timestep = CONTROL_PERIOD_S
@@ -182,32 +184,21 @@ def _model(robot: Robot, friction: float) -> mujoco.MjModel:
     options.integrator = mujoco.mjtIntegrator.mjINT_EULER
     options.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     options.solver = mujoco.mjtSolver.mjSOL_NEWTON
-    options.disableflags |= (
-        mujoco.mjtDisableBit.mjDSBL_REFSAFE
-        | mujoco.mjtDisableBit.mjDSBL_EULERDAMP
-        | mujoco.mjtDisableBit.mjDSBL_LIMIT
-    )
+    options.tolerance = 1e-14
+    # The robot's own limits of motion end a walk; no joint has a stop.
+    options.disableflags |= mujoco.mjtDisableBit.mjDSBL_LIMIT
     spec.body(TORSO).add_freejoint()
-    contact = {
-        "friction": (friction, 0.0, 0.0),
-        "solref": (_CONTACT_TIME_S, _CONTACT_DAMPING),
-        "solimp": _CONTACT,
-        "condim": 3,
-    }
-    spec.worldbody.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0.0, 0.0, 1.0), **contact
+    floor = spec.worldbody.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0.0, 0.0, 1.0)
     )
-    for name in CONTACT_LINKS:
-        for geom in spec.body(name).geoms:
-            geom.friction, geom.condim = contact["friction"], 3
-            geom.solref, geom.solimp = contact["solref"], _CONTACT
-            geom.contype, geom.conaffinity = 2, 1  # with the floor only
+    soles = [geom for name in CONTACT_LINKS for geom in spec.body(name).geoms]
+    for geom in (floor, *soles):
+        geom.friction, geom.condim = (friction, 0.0, 0.0), 3
+        geom.solimp[:2] = _CONTACT_IMPEDANCE
+        geom.margin = _NEAR_M / 2.0  # of two geoms, margins add up
+    for sole in soles:
+        sole.contype, sole.conaffinity = 2, 1  # meets the floor only
     for name in JOINT_NAMES:
-        servo = spec.add_equality(
-            name=name, type=mujoco.mjtEq.mjEQ_JOINT, name1=name,
-            objtype=mujoco.mjtObj.mjOBJ_JOINT,
-        )  # fmt: skip
-        dt = CONTROL_PERIOD_S
-        servo.solref = (-_POSITION_GAIN / dt**2, -1.0 / dt)
-        servo.solimp = _STIFF
+        joint = spec.joint(name)
+        joint.solimp_friction[:2] = _SERVO_IMPEDANCE
     return spec.compile()

@@ -83,7 +83,7 @@ class SimSettings(Settings):
     engine: str = setting(
         "pybullet",
         "",
-        "pybullet: full physics; kinematic: joints on their references, no contact",
+        "pybullet, mujoco: full physics; kinematic: joints on their references",
         choices=tuple(ENGINES),
     )
     limits: LimitSettings = section(LimitSettings)
