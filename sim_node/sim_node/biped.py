@@ -106,7 +106,9 @@ class SimulatedBiped:
         self._start = start
         sizes = settings.disturbances
         torque_limits_nm = robot.torque_limit_nm * sizes.torque_limit_factor
-        self.world = plant_of(settings.engine)(robot, sizes.friction, torque_limits_nm)
+        self.world = plant_of(settings.engine)(
+            robot, sizes.friction, torque_limits_nm, settings.servo
+        )
         self._open = True
         self._noise_sizes = np.array(
             [

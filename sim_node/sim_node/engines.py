@@ -19,11 +19,20 @@ class Engine(NamedTuple):
     """Of the project, that brings what the module imports."""
     unfelt: tuple[str, ...] = ()
     """Disturbances that have no effect on it."""
+    servos: tuple[str, ...] = ("ideal",)
+    """Kinds of servos that it has."""
 
 
 ENGINES: Final = {
-    "pybullet": Engine("sim_node.pybullet_world", "PyBulletWorld"),
-    "mujoco": Engine("sim_node.mujoco_world", "MuJoCoWorld", extra="mujoco"),
+    "pybullet": Engine(
+        "sim_node.pybullet_world", "PyBulletWorld", servos=("ideal", "lag")
+    ),
+    "mujoco": Engine(
+        "sim_node.mujoco_world",
+        "MuJoCoWorld",
+        extra="mujoco",
+        servos=("ideal", "lag", "pd"),
+    ),
     "kinematic": Engine(
         "sim_node.kinematic_world",
         "KinematicWorld",

@@ -22,11 +22,12 @@ from biped_description.robot import Robot
 from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
 from sim_node.physics import Array, Physics, Vector, WaistState
+from sim_node.servo import IDEAL_SERVO, ServoSettings
 
 _N_JOINTS: Final = len(JOINT_NAMES)
 _KEPT: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
-# Shares of an error that are taken back in a tick, as in the Bullet world.
-_POSITION_GAIN, _PENETRATION_GAIN = 0.1, 0.2
+_PENETRATION_SHARE: Final = 0.2
+"""Of it that is taken back in a tick, as in the Bullet world."""
 _NEAR_M: Final = 5e-3
 """A corner of a sole that is no higher is kept from entering the floor. MuJoCo's own
 contact acts on what has entered: feet land by impacts, and unloaded corners rattle."""
@@ -37,9 +38,18 @@ _SERVO_IMPEDANCE, _CONTACT_IMPEDANCE = 0.9999, 0.999
 class MuJoCoWorld(Physics):
     """Floor and robot; see `Physics`."""
 
-    def __init__(self, robot: Robot, friction: float, torque_limits_nm: Array) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        friction: float,
+        torque_limits_nm: Array,
+        servo: ServoSettings = IDEAL_SERVO,
+    ) -> None:
         """Build the model, with the robot standing at the origin."""
         self._model = model = _model(robot, friction)
+        self._torque_limits_nm = torque_limits_nm
+        self._servo = servo
+        self._pulls = servo.kind == "pd"
         self._data = mujoco.MjData(model)
         self._torso = model.body(TORSO).id
         self._links = np.array([model.body(name).id for name in LINK_NAMES])
@@ -47,8 +57,13 @@ class MuJoCoWorld(Physics):
         joints = [model.joint(name) for name in JOINT_NAMES]
         self._positions = np.array([joint.qposadr[0] for joint in joints])
         self._dofs = np.array([joint.dofadr[0] for joint in joints])
-        # A servo is dry friction that brakes towards a velocity of its own.
-        model.dof_frictionloss[self._dofs] = torque_limits_nm
+        if self._pulls:
+            model.dof_frictionloss[self._dofs] = servo.friction_nm
+            model.dof_armature[self._dofs] = servo.rotor_inertia_kg_m2
+            mujoco.mj_setConst(model, mujoco.MjData(model))
+        else:
+            # Dry friction that brakes towards a velocity of its own.
+            model.dof_frictionloss[self._dofs] = torque_limits_nm
         self._mass = model.body_mass[self._links].copy()
         self._inertia = model.body_inertia[self._links].copy()
         self._handles = itertools.count()
@@ -79,6 +94,8 @@ class MuJoCoWorld(Physics):
         model, data = self._model, self._data
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
+        if self._pulls:
+            self._pull(q, dq)
         servos = self._ask_servos(q, dq)
         normals = self._ask_soles()
         mujoco.mj_fwdActuation(model, data)
@@ -86,8 +103,9 @@ class MuJoCoWorld(Physics):
         mujoco.mj_fwdConstraint(model, data)
         mujoco.mj_Euler(model, data)
         data.xfrc_applied[self._torso] = 0.0
-        torques = np.zeros(model.nv)
-        torques[data.efc_id[servos]] = data.efc_force[servos]
+        torques = data.qfrc_applied.copy()
+        if not self._pulls:
+            torques[data.efc_id[servos]] = data.efc_force[servos]
         joints[:_N_JOINTS] = data.qpos[self._positions]
         joints[_N_JOINTS : 2 * _N_JOINTS] = data.qvel[self._dofs]
         joints[2 * _N_JOINTS :] = torques[self._dofs]
@@ -129,17 +147,35 @@ class MuJoCoWorld(Physics):
         """Forget all kept states."""
         self._kept.clear()
 
-    # -- constraints ---------------------------------------------------------------
+    # -- servos and soles ----------------------------------------------------------
+
+    def _pull(self, q: Array, dq: Array) -> None:
+        """Let PD servos pull; with a delay, as they would have a tick ago."""
+        data, servo = self._data, self._servo
+        position = q - data.qpos[self._positions]
+        velocity = dq - data.qvel[self._dofs]
+        torques = servo.stiffness_nm_rad * position + servo.damping_nm_s_rad * velocity
+        torques = np.clip(torques, -self._torque_limits_nm, self._torque_limits_nm)
+        now = data.userdata.copy() if servo.delay_ticks else torques
+        data.qfrc_applied[self._dofs] = now
+        data.userdata[:] = torques
 
     def _ask_servos(self, q: Array, dq: Array) -> slice:
-        """Ask for the velocities that lead to the next references; return the rows.
+        """Ask for the velocities that lead to the next references, or for standstill.
 
-        A servo without torque has no row.
+        Servos lead somewhere; the gears of PD servos only brake. One without torque or
+        friction has no row.
+
+        Returns:
+            The rows.
         """
         data = self._data
         asked = np.zeros(self._model.nv)
-        error = q - data.qpos[self._positions]
-        asked[self._dofs] = dq + _POSITION_GAIN / CONTROL_PERIOD_S * error
+        if not self._pulls:
+            position, velocity = self._servo.shares
+            error, now = q - data.qpos[self._positions], data.qvel[self._dofs]
+            asked[self._dofs] = velocity * dq + (1.0 - velocity) * now
+            asked[self._dofs] += position / CONTROL_PERIOD_S * error
         rows = slice(data.nf)
         missing = (asked - data.qvel)[data.efc_id[rows]]
         data.efc_aref[rows] = missing / CONTROL_PERIOD_S
@@ -155,7 +191,7 @@ class MuJoCoWorld(Physics):
         first, normals = data.nf, data.contact.efc_address
         height = data.contact.dist
         missing = -data.efc_vel[first : data.nefc]
-        share = np.where(height > 0.0, 1.0, _PENETRATION_GAIN)
+        share = np.where(height > 0.0, 1.0, _PENETRATION_SHARE)
         missing[normals - first] -= share * height / CONTROL_PERIOD_S
         data.efc_aref[first : data.nefc] = missing / CONTROL_PERIOD_S
         return normals
@@ -187,6 +223,7 @@ def _model(robot: Robot, friction: float) -> mujoco.MjModel:
     options.tolerance = 1e-14
     # The robot's own limits of motion end a walk; no joint has a stop.
     options.disableflags |= mujoco.mjtDisableBit.mjDSBL_LIMIT
+    spec.nuserdata = _N_JOINTS  # torques that a delay holds back
     spec.body(TORSO).add_freejoint()
     floor = spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0.0, 0.0, 1.0)

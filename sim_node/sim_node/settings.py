@@ -8,6 +8,7 @@ from biped_common.settings import Settings, SettingsError, section, setting
 from biped_description.settings import RobotSettings
 from biped_ros.processor import ProcessorSettings
 from sim_node.engines import ENGINES
+from sim_node.servo import ServoSettings
 
 
 @dataclass(frozen=True)
@@ -88,10 +89,16 @@ class SimSettings(Settings):
     )
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
+    servo: ServoSettings = section(ServoSettings)
 
     def check_together(self) -> None:
-        """Refuse disturbances that would have no effect."""
-        for name in ENGINES[self.engine].unfelt:
+        """Refuse servos that there are not, and disturbances without effect."""
+        engine = ENGINES[self.engine]
+        if self.servo.kind not in engine.servos:
+            kinds = ", ".join(engine.servos)
+            problem = f"must be one of {kinds} with engine = {self.engine}"
+            raise SettingsError("servo.kind", self.servo.kind, problem)
+        for name in engine.unfelt:
             value = getattr(self.disturbances, name)
             nominal = getattr(DisturbanceSettings(), name)
             if value != nominal:
