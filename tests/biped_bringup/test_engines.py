@@ -67,6 +67,15 @@ def test_a_disturbance_without_effect_is_refused_in_one_line(biped):
     )
 
 
+def test_a_servo_that_an_engine_has_not_is_refused_in_one_line(biped):
+    outcome = biped("check", *KINEMATIC, "--set", "sim.servo.kind=pd")
+    assert (outcome.status, outcome.err) == (
+        2,
+        "biped check: sim.servo.kind = 'pd': must be one of ideal with engine = "
+        "kinematic\n",
+    )
+
+
 def test_an_unknown_engine_is_refused_with_those_there_are(biped):
     outcome = biped("check", "--set", "sim.engine=bullet")
     assert outcome.status == 2
