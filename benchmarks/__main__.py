@@ -13,6 +13,7 @@ import sys
 # In this order: what needs the quietest machine comes first.
 PARTS = (
     "environment_tick",
+    "engine_step",
     "learner_tick",
     "replay",
     "realtime",

@@ -90,7 +90,13 @@ class _Turns:
 
     def _bare_tick_s(self) -> float:
         world, spent = cast(PyBulletWorld, self._bare.world), 0.0
-        robot = world.client, world.robot, world.joint_numbers, world.torque_limits_nm
+        robot = (
+            world.client,
+            world.robot,
+            world.joint_numbers,
+            world.torque_limits_nm,
+            world.servo_shares,
+        )
         for _ in range(TICKS_PER_LEARNING_TICK):
             command_servos(*robot, *next(self._commands))
             start = time.perf_counter()

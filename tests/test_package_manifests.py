@@ -41,6 +41,7 @@ FROM_PIP = {
     "mcap": "mcap",
     "mcap_ros2": "mcap-ros2-support",
     "msgspec": "msgspec",
+    "mujoco": "mujoco-core",
     "numba": "numba",
     "pyarrow": "pyarrow",
     "stable_baselines3": "stable-baselines3",

@@ -14,9 +14,6 @@ from numba import njit
 from biped_description.joints import JOINT_NAMES
 from sim_node.bullet_api import POSITION_CONTROL, compiled_api
 
-# Share of its position and speed errors that the servo takes back per tick.
-POSITION_GAIN = 0.5
-VELOCITY_GAIN = 1.0
 _N_JOINTS = len(JOINT_NAMES)
 # Rows of the joints' numbers: in the API, among positions, among velocities.
 NUMBER, Q_INDEX, U_INDEX = range(3)
@@ -50,16 +47,32 @@ _DOUBLE = 8  # [bytes]
 
 @njit(cache=True)
 def command_servos(
-    client: int, robot: int, numbers: Any, torque_limits: Any, q: Any, dq: Any
+    client: int,
+    robot: int,
+    numbers: Any,
+    torque_limits: Any,
+    shares: Any,
+    q: Any,
+    dq: Any,
 ) -> None:
-    """Give the servos their references for the next tick."""
+    """Give the servos their references for the next tick.
+
+    Args:
+        client: of the world.
+        robot: its body.
+        numbers: (3, 12) of the joints.
+        torque_limits: (12,) [N m]
+        shares: (2,) of its errors that a servo takes back, as in `ServoShares`.
+        q: (12,) positions now [rad].
+        dq: (12,) velocities until the next tick [rad/s].
+    """
     message = _init_control(client, robot, POSITION_CONTROL)
     for i in range(_N_JOINTS):
         u_index = numbers[U_INDEX, i]
         _set_position(message, numbers[Q_INDEX, i], q[i])
-        _set_position_gain(message, u_index, POSITION_GAIN)
+        _set_position_gain(message, u_index, shares[0])
         _set_velocity(message, u_index, dq[i])
-        _set_velocity_gain(message, u_index, VELOCITY_GAIN)
+        _set_velocity_gain(message, u_index, shares[1])
         _set_force(message, u_index, torque_limits[i])
     _submit(client, message)
 
@@ -136,12 +149,13 @@ def tick(
     left_sole: int,
     numbers: Any,
     torque_limits: Any,
+    shares: Any,
     q: Any,
     dq: Any,
     joints: Any,
 ) -> tuple[float, float, float, float, float]:
     """Command, step and read; see `Physics.step`."""
-    command_servos(client, robot, numbers, torque_limits, q, dq)
+    command_servos(client, robot, numbers, torque_limits, shares, q, dq)
     step_physics(client)
     read_joints(client, robot, numbers, joints)
     return sum_contact(contact_points(client, robot, floor), left_sole)

@@ -15,12 +15,24 @@ class Engine(NamedTuple):
     module: str
     plant: str
     """Name of its class in the module, a `Physics`."""
+    extra: str = ""
+    """Of the project, that brings what the module imports."""
     unfelt: tuple[str, ...] = ()
     """Disturbances that have no effect on it."""
+    servos: tuple[str, ...] = ("ideal",)
+    """Kinds of servos that it has."""
 
 
 ENGINES: Final = {
-    "pybullet": Engine("sim_node.pybullet_world", "PyBulletWorld"),
+    "pybullet": Engine(
+        "sim_node.pybullet_world", "PyBulletWorld", servos=("ideal", "lag")
+    ),
+    "mujoco": Engine(
+        "sim_node.mujoco_world",
+        "MuJoCoWorld",
+        extra="mujoco",
+        servos=("ideal", "lag", "pd"),
+    ),
     "kinematic": Engine(
         "sim_node.kinematic_world",
         "KinematicWorld",
@@ -39,8 +51,9 @@ def plant_of(engine: str) -> type[Physics]:
     try:
         module = importlib.import_module(found.module)
     except ImportError as error:
+        needs = f"it needs pip install 'biped[{found.extra}]'; " if found.extra else ""
         raise EngineMissingError(
-            f"sim.engine = {engine!r}: cannot be loaded, {error}; "
+            f"sim.engine = {engine!r}: cannot be loaded, {error}; {needs}"
             "kinematic needs nothing"
         ) from error
     plant: type[Physics] = getattr(module, found.plant)

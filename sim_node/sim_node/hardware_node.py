@@ -61,6 +61,7 @@ class HardwareNode(GuardedNode):
             robot,
             disturbances.friction,
             robot.torque_limit_nm * disturbances.torque_limit_factor,
+            settings.sim.servo,
         )
         rng = np.random.default_rng(robot_stream(settings.seed))
         self._hardware = SimulatedHardware(plant, robot, settings.sim.sensors, rng)

@@ -22,6 +22,7 @@ from biped_description.settings import RobotSettings
 from sim_node.contact import NO_CONTACT, FloorContact
 from sim_node.errors import SnapshotError
 from sim_node.physics import Array, Physics, Vector, WaistState
+from sim_node.servo import IDEAL_SERVO, ServoSettings
 
 _NO_TORQUE = np.zeros(len(JOINT_NAMES))
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -52,9 +53,15 @@ class _State(NamedTuple):
 class KinematicWorld(Physics):
     """See `Physics`; friction and torque limits have no effect here."""
 
-    def __init__(self, robot: Robot, friction: float, torque_limits_nm: Array) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        friction: float,
+        torque_limits_nm: Array,
+        servo: ServoSettings = IDEAL_SERVO,
+    ) -> None:
         """Stand at the origin with stretched legs."""
-        del friction, torque_limits_nm
+        del friction, torque_limits_nm, servo
         self._robot = robot
         self._masses = robot.link_masses_kg
         self._handles = itertools.count()

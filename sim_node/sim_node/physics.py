@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from biped_description.robot import Robot
 from sim_node.contact import FloorContact
+from sim_node.servo import IDEAL_SERVO, ServoSettings
 
 Vector: TypeAlias = tuple[float, float, float]
 Array: TypeAlias = NDArray[np.float64]
@@ -31,13 +32,20 @@ class WaistState(NamedTuple):
 class Physics(Protocol):
     """One plant. Numbers that the physics leaves undefined are handed out as NaN."""
 
-    def __init__(self, robot: Robot, friction: float, torque_limits_nm: Array) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        friction: float,
+        torque_limits_nm: Array,
+        servo: ServoSettings = IDEAL_SERVO,
+    ) -> None:
         """Build the plant.
 
         Args:
             robot: that stands in it.
             friction: lateral, between sole and floor [].
             torque_limits_nm: (12,) that the servos can reach.
+            servo: one of those that the table of engines says it has.
         """
 
     def set_mass_factors(self, factors: Array) -> None:

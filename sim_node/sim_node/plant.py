@@ -24,7 +24,7 @@ def make_plant(
 
     Args:
         robot: that stands in it.
-        settings: engine, friction and sensors.
+        settings: engine, friction, servos and sensors.
         torque_limits_nm: (12,) that the servos can reach.
         rng: of the sensors' noise.
 
@@ -37,8 +37,8 @@ def make_plant(
         module = importlib.import_module("sim_node.robot_hardware")
         real: Hardware = module.RobotHardware(robot, sensors.timeout_s)
         return SensedWorld(robot, real, sensors.tilt_limit_rad)
-    friction = settings.disturbances.friction
-    plant = plant_of(settings.engine)(robot, friction, torque_limits_nm)
+    friction, servo = settings.disturbances.friction, settings.servo
+    plant = plant_of(settings.engine)(robot, friction, torque_limits_nm, servo)
     if settings.observations == "truth":
         return plant
     hardware = SimulatedHardware(plant, robot, sensors, rng)

@@ -31,6 +31,7 @@ from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
 from sim_node.physics import Array, Physics, Vector, WaistState
 from sim_node.quiet import engine_chatter_dropped
+from sim_node.servo import IDEAL_SERVO, ServoSettings
 
 _BASE_LINK = -1
 
@@ -52,7 +53,13 @@ class _JointInfo(ctypes.Structure):
 class PyBulletWorld(Physics):
     """Floor and robot in a world of their own; see `Physics`."""
 
-    def __init__(self, robot: Robot, friction: float, torque_limits_nm: Array) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        friction: float,
+        torque_limits_nm: Array,
+        servo: ServoSettings = IDEAL_SERVO,
+    ) -> None:
         """Open a world, with the robot standing at the origin."""
         self.client: int = api.b3ConnectPhysicsDirect()
         with engine_chatter_dropped():
@@ -83,6 +90,7 @@ class PyBulletWorld(Physics):
             self._set_friction(self.robot, sole, friction)
         self._disable_default_motors()
         self.torque_limits_nm = torque_limits_nm
+        self.servo_shares = np.array(servo.shares)
         self._kept: set[int] = set()
 
     def set_mass_factors(self, factors: Array) -> None:
@@ -143,6 +151,7 @@ class PyBulletWorld(Physics):
                 self.left_sole,
                 self.joint_numbers,
                 self.torque_limits_nm,
+                self.servo_shares,
                 q,
                 dq,
                 joints,

@@ -8,6 +8,7 @@ from biped_common.settings import Settings, SettingsError, section, setting
 from biped_description.settings import RobotSettings
 from biped_ros.processor import ProcessorSettings
 from sim_node.engines import ENGINES
+from sim_node.servo import ServoSettings
 
 ROBOT = "robot"
 """Instead of an engine."""
@@ -141,12 +142,13 @@ class SimSettings(Settings):
     engine: str = setting(
         "pybullet",
         "",
-        "pybullet: full physics; kinematic: joints on their references, no contact; "
+        "pybullet, mujoco: full physics; kinematic: joints on their references; "
         "robot: a real one, on ros2_control's topics",
         choices=(*ENGINES, ROBOT),
     )
     limits: LimitSettings = section(LimitSettings)
     disturbances: DisturbanceSettings = section(DisturbanceSettings)
+    servo: ServoSettings = section(ServoSettings)
     observations: str = setting(
         "truth",
         "",
@@ -162,16 +164,20 @@ class SimSettings(Settings):
         return self.disturbances.random or sensed or self.engine == ROBOT
 
     def check_together(self) -> None:
-        """Refuse disturbances that would have no effect."""
-        if self.engine == ROBOT and self.observations != "sensors":
+        """Refuse servos that there are not, and disturbances without effect."""
+        if self.engine != ROBOT:
+            servos, unfelt = ENGINES[self.engine].servos, ENGINES[self.engine].unfelt
+        elif self.observations == "sensors":
+            servos, unfelt = (ServoSettings().kind,), _FELT_BY_NO_ROBOT
+        else:
             raise SettingsError(
                 "observations",
                 self.observations,
                 "must be sensors with engine = robot",
             )
-        unfelt = (
-            _FELT_BY_NO_ROBOT if self.engine == ROBOT else ENGINES[self.engine].unfelt
-        )
+        if self.servo.kind not in servos:
+            problem = f"must be one of {', '.join(servos)} with engine = {self.engine}"
+            raise SettingsError("servo.kind", self.servo.kind, problem)
         for name in unfelt:
             value = getattr(self.disturbances, name)
             nominal = getattr(DisturbanceSettings(), name)

@@ -8,6 +8,7 @@ from tests.biped_bringup.runs import SHORT, quick
 
 from biped_bringup.training import TrainingRun
 from biped_lab.engine_agreement import GreedyWalk, agreement, main, walk
+from sim_node.engines import ENGINES
 
 
 def greedy(zmp_m: np.ndarray, joint_references: np.ndarray) -> GreedyWalk:
@@ -25,7 +26,7 @@ def memory(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "kinematic"])
+@pytest.mark.parametrize("engine", list(ENGINES))
 def test_a_memory_walks_on_the_engine_asked_for(memory, engine):
     run = TrainingRun.load(memory / "memory.npz")
     run.close()

@@ -11,7 +11,6 @@ from biped_description.joints import JOINT_NAMES
 from biped_description.links import CONTACT_LINKS
 from biped_description.multilink_zmp import GRAVITY_M_S2
 from biped_description.robot import Robot
-from sim_node.bullet_kernels import POSITION_GAIN, VELOCITY_GAIN
 from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
 from sim_node.physics import Physics, Vector, WaistState
@@ -21,6 +20,8 @@ with engine_chatter_dropped():
     import pybullet
 
 _BASE_LINK = -1
+# Of an ideal servo.
+_POSITION_SHARE, _VELOCITY_SHARE = 0.5, 1.0
 # Places in what `getJointInfo` returns.
 _JOINT_NAME, _LINK_NAME = 1, 12
 # Places in a contact point, with the robot as body A.
@@ -83,8 +84,8 @@ class PlainWorld(Physics):
         )
         self._servo = (
             torque_limits_nm.tolist(),
-            [POSITION_GAIN] * n_joints,
-            [VELOCITY_GAIN] * n_joints,
+            [_POSITION_SHARE] * n_joints,
+            [_VELOCITY_SHARE] * n_joints,
             self.client,
         )
 

@@ -36,6 +36,7 @@ _PACKAGES = (
     "biped",
     "mcap",
     "msgspec",
+    "mujoco-core",
     "numba",
     "numpy",
     "pybullet",

@@ -31,7 +31,7 @@ from learner_node.walking.session import LearningSession, Tally
 from msgs_json.episode_result import EpisodeResult
 
 # Packages whose version can change a walk's last bit.
-_PACKAGES = ("biped", "numpy", "numba", "pybullet")
+_PACKAGES = ("biped", "numpy", "numba", "pybullet", "mujoco-core")
 
 
 class _Spent(msgspec.Struct):

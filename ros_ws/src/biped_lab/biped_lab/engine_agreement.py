@@ -96,7 +96,9 @@ def main() -> int:
         prog="python -m biped_lab.engine_agreement", description=__doc__.splitlines()[0]
     )
     parser.add_argument("folders", nargs="+", type=Path, metavar="DIR")
-    parser.add_argument("--engines", nargs=2, choices=ENGINES, default=tuple(ENGINES))
+    parser.add_argument(
+        "--engines", nargs=2, choices=ENGINES, default=("pybullet", "kinematic")
+    )
     options = parser.parse_args()
     print(_table_head(options.engines))
     pairs = []

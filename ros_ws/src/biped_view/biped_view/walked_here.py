@@ -27,7 +27,7 @@ from trajectory_node.waist_reference import WaistReference
 
 _SEED = 0
 """Of the disturbances, if any: as `biped walk` draws them where it is given no seed."""
-_PACKAGES = ("biped", "numpy", "numba", "pybullet")
+_PACKAGES = ("biped", "numpy", "numba", "pybullet", "mujoco-core")
 """Whose versions can change a walk's last bit."""
 
 
