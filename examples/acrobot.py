@@ -33,9 +33,9 @@ TASK = ControlTask(
     ),
     judge_of_values=rewarded,
     radii=(0.6, 0.6, 0.6, 0.6, 2.5, 5.0),  # cosines and sines; [rad/s] of the links
-    goal=-100.0,
+    goal=-200.0,
     best=0.0,
-    most_episodes=300,
+    most_episodes=200,
     settings=MethodSettings(
         states=StateSettings(life_episodes=1000),
         xol=XolSettings(

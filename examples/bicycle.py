@@ -26,8 +26,9 @@ TASK = ControlTask(
     radii=(0.3, 2.0, 0.05, 0.25, 100.0),
     goal=950.0,
     best=1000.0,
-    most_episodes=1000,
+    most_episodes=500,
     settings=MethodSettings(
+        method="q_lambda",  # XoL does not learn it with the constants below
         states=StateSettings(life_episodes=1000),
         xol=XolSettings(
             discount=0.97,

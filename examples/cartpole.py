@@ -24,7 +24,7 @@ TASK = ControlTask(
     radii=(1.2, 1.0, 0.08, 0.8),  # cart [m], [m/s]; pole [rad], [rad/s]
     goal=475.0,
     best=500.0,
-    most_episodes=1000,
+    most_episodes=500,
     settings=MethodSettings(
         states=StateSettings(life_episodes=1000),
         xol=XolSettings(

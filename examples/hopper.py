@@ -49,7 +49,7 @@ TASK = ControlTask(
     score=distance_m,
     goal=0.5,
     best=16.0,  # 3.2 s at 5 m/s
-    most_episodes=500,
+    most_episodes=300,
     settings=MethodSettings(
         states=StateSettings(life_episodes=1000),
         xol=XolSettings(

@@ -145,7 +145,7 @@ def main() -> int:
     )
     parser.add_argument("program", type=Path)
     parser.add_argument("--seeds", type=positive, default=10, metavar="N")
-    parser.add_argument("--first", type=positive, default=8101, metavar="SEED")
+    parser.add_argument("--first", type=positive, default=8201, metavar="SEED")
     parser.add_argument("--arms", nargs="+", metavar="ARM", help="some of them only")
     parser.add_argument("--out", type=Path, default=Path("docs/results/other_tasks"))
     options = parser.parse_args()
