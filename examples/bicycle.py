@@ -47,4 +47,4 @@ TASK = ControlTask(
 )
 
 if __name__ == "__main__":
-    sys.exit(show(TASK, *map(int, sys.argv[1:] or ["11"])))
+    sys.exit(show(TASK, *map(int, sys.argv[1:] or ["8201"])))

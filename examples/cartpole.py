@@ -12,7 +12,7 @@ import sys
 import gymnasium
 
 from biped_lab.control_task import ControlTask, show
-from biped_lab.gym_learning import survival
+from biped_lab.gym_learning import failing, survival
 from learner_node.methods import MethodSettings
 from learner_node.q_lambda import QLambdaSettings
 from learner_node.states import StateSettings
@@ -21,6 +21,7 @@ from learner_node.xol.settings import FixedModeSettings, XolSettings
 TASK = ControlTask(
     make=lambda: gymnasium.make("CartPole-v1"),
     judge=survival(every=10),
+    judge_of_values=failing,
     radii=(1.2, 1.0, 0.08, 0.8),  # cart [m], [m/s]; pole [rad], [rad/s]
     goal=475.0,
     best=500.0,
@@ -40,10 +41,10 @@ TASK = ControlTask(
             ),
         ),
         q_lambda=QLambdaSettings(
-            learning_rate=0.5, discount=0.99, trace_decay=0.95, exploration=0.0
+            learning_rate=0.2, discount=0.98, trace_decay=0.8, exploration=0.0
         ),
     ),
 )
 
 if __name__ == "__main__":
-    sys.exit(show(TASK, *map(int, sys.argv[1:] or ["11"])))
+    sys.exit(show(TASK, *map(int, sys.argv[1:] or ["8201"])))

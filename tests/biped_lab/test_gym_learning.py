@@ -10,6 +10,7 @@ from biped_lab.gym_learning import (
     Step,
     UnfitEnvironmentError,
     arrival,
+    failing,
     perform,
     practise,
     rewarded,
@@ -155,6 +156,19 @@ def test_lasting_is_rewarded_every_so_often():
 def test_before_the_first_so_many_steps_lasting_is_no_success():
     judge = survival(every=2, first=5)
     assert [judge(step(number)).counts for number in (2, 4, 6)] == [False, False, True]
+
+
+def test_where_only_failing_is_judged_lasting_is_nothing():
+    ends = [
+        failing(step(10)),
+        failing(step(terminated=True)),
+        failing(step(truncated=True)),
+    ]
+    assert [(end.penalty, end.reward, end.ended) for end in ends] == [
+        (None, None, False),
+        (0, None, True),
+        (None, None, True),
+    ]
 
 
 def test_the_environments_own_reward_is_never_a_success():

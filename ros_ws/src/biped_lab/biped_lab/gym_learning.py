@@ -166,6 +166,11 @@ def told_by_info(step: Step) -> Outcome:
     return Outcome(ended=True) if step.ended else GOING_ON
 
 
+def failing(step: Step) -> Outcome:
+    """Judge only that a terminated episode has failed, with penalty 0."""
+    return Outcome(penalty=0 if step.terminated else None, ended=step.ended)
+
+
 def rewarded(step: Step) -> Outcome:
     """Take the environment's own reward, for learners of values; nothing counts."""
     return Outcome(reward=step.reward, ended=step.ended)
