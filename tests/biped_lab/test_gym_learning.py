@@ -10,8 +10,10 @@ from biped_lab.gym_learning import (
     Step,
     UnfitEnvironmentError,
     arrival,
+    failing,
     perform,
     practise,
+    rewarded,
     survival,
     told_by_info,
 )
@@ -149,6 +151,29 @@ def test_lasting_is_rewarded_every_so_often():
     judge = survival(every=3)
     rewards = [judge(step(number)).reward for number in range(1, 7)]
     assert rewards == [None, None, 1.0, None, None, 1.0]
+
+
+def test_before_the_first_so_many_steps_lasting_is_no_success():
+    judge = survival(every=2, first=5)
+    assert [judge(step(number)).counts for number in (2, 4, 6)] == [False, False, True]
+
+
+def test_where_only_failing_is_judged_lasting_is_nothing():
+    ends = [
+        failing(step(10)),
+        failing(step(terminated=True)),
+        failing(step(truncated=True)),
+    ]
+    assert [(end.penalty, end.reward, end.ended) for end in ends] == [
+        (None, None, False),
+        (0, None, True),
+        (None, None, True),
+    ]
+
+
+def test_the_environments_own_reward_is_never_a_success():
+    told = rewarded(Step(1, -1.0, True, False, {}))
+    assert told == Outcome(reward=-1.0, ended=True)
 
 
 def test_not_lasting_is_a_failure():

@@ -7,3 +7,8 @@ import registers ours, and `gymnasium.make("biped_lab:BipedWaist-v0")` does both
 import gymnasium
 
 gymnasium.register(id="BipedWaist-v0", entry_point="biped_lab.waist_env:BipedWaistEnv")
+gymnasium.register(
+    id="BicycleBalance-v0",
+    entry_point="biped_lab.bicycle_env:BicycleBalanceEnv",
+    max_episode_steps=1000,
+)

@@ -166,16 +166,30 @@ def told_by_info(step: Step) -> Outcome:
     return Outcome(ended=True) if step.ended else GOING_ON
 
 
-def survival(every: int) -> Judge:
+def failing(step: Step) -> Outcome:
+    """Judge only that a terminated episode has failed, with penalty 0."""
+    return Outcome(penalty=0 if step.terminated else None, ended=step.ended)
+
+
+def rewarded(step: Step) -> Outcome:
+    """Take the environment's own reward, for learners of values; nothing counts."""
+    return Outcome(reward=step.reward, ended=step.ended)
+
+
+def survival(every: int, first: int = 1) -> Judge:
     """Return a judge for tasks of lasting: each so many steps are a success.
 
     A terminated episode has failed, with penalty 0.
+
+    Args:
+        every: steps from one success to the next.
+        first: the step before which there is none, since anything lasts so long.
     """
 
     def judge(step: Step) -> Outcome:
         if step.terminated:
             return Outcome(penalty=0, ended=True)
-        lasted = step.number % every == 0 or step.truncated
+        lasted = step.number >= first and (step.number % every == 0 or step.truncated)
         return Outcome(reward=1.0 if lasted else None, counts=lasted, ended=step.ended)
 
     return judge
