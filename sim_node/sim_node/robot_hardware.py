@@ -115,6 +115,8 @@ class RobotHardware(Hardware):
         del handle
         self._join()
         with self._changed:
+            if not self._begun:
+                self._node.get_logger().info(f"waiting for a call of /{NAME}/begin")
             self._changed.wait_for(lambda: self._begun)
             self._begun = False
         self._walked = True
