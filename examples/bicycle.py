@@ -1,11 +1,11 @@
-"""XoL learns to balance the bicycle of Randløv and Alstrøm (1998).
+"""Q(lambda) learns to balance the bicycle of Randløv and Alstrøm (1998).
 
     python examples/bicycle.py [SEED]
 
-A fall is a penalty for the last 50 decisions, half a second; every 50 steps survived
-are a reward, but for the first, which any ride survives. Learned is a mean of at least
-950 of 1,000 steps, 10 s, over 20 episodes of the frozen policy. Who else learns it:
-docs/other-tasks.md.
+XoL does not, with the constants below (docs/other-tasks.md). A fall is a penalty, and
+every 50 steps survived are a reward, but for the first, which any ride survives.
+Learned is a mean of at least 950 of 1,000 steps, 10 s, over 20 episodes of the frozen
+policy.
 """
 
 import sys
@@ -28,7 +28,7 @@ TASK = ControlTask(
     best=1000.0,
     most_episodes=500,
     settings=MethodSettings(
-        method="q_lambda",  # XoL does not learn it with the constants below
+        method="q_lambda",
         states=StateSettings(life_episodes=1000),
         xol=XolSettings(
             discount=0.97,

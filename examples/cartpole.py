@@ -4,7 +4,8 @@
 
 A failure is a penalty for the last three decisions, every ten steps survived are a
 reward. Learned is a mean return of at least 475, the environment's own threshold, over
-20 episodes of the frozen policy. Who else learns it: docs/other-tasks.md.
+20 episodes of the frozen policy: within 500 episodes, three of the seeds 8201 to 8205
+got there. Who else learns it: docs/other-tasks.md.
 """
 
 import sys

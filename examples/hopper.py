@@ -5,7 +5,8 @@
 Needs the extra `mujoco`. Each torque is at its least, zero or at its most. A fall is a
 penalty for the last ten decisions, each new decimetre in an episode a reward. Learned
 is a mean of at least 0.5 m, within 400 steps (3.2 s), over 20 episodes of the frozen
-policy: no hopping, which needs other means. Who else learns it: docs/other-tasks.md.
+policy: no hopping. Of the seeds 8201 to 8205 the first got there within 300 episodes.
+Who else learns it: docs/other-tasks.md.
 """
 
 import sys
