@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from tests.biped_lab.report.made_results import STRATEGY_1, made_results, runs_of
 
-from biped_lab.report.tables import Table, studies_table
+from biped_lab.markdown import Table
+from biped_lab.report.tables import studies_table
 from biped_lab.results import ResultsError, StudyResults
 
 

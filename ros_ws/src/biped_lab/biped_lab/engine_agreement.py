@@ -25,6 +25,7 @@ from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_common.errors import BipedError
 from biped_common.timing import seconds
+from biped_lab import markdown
 from sim_node.control_tick import ControlTick
 from sim_node.engines import ENGINES
 
@@ -127,7 +128,7 @@ def _table_head(engines: Sequence[str]) -> str:
     for engine in engines:
         cells += [f"{engine}: walked [s]", "end", "peak ZMP error [mm]"]
     cells += ["same motion for [s]", "ZMPs apart then [mm rms]", "in all [mm rms]"]
-    return _line(cells) + "\n" + _line(["---"] * len(cells))
+    return markdown.head(cells)
 
 
 def _row(name: str, one: GreedyWalk, other: GreedyWalk) -> str:
@@ -142,11 +143,7 @@ def _row(name: str, one: GreedyWalk, other: GreedyWalk) -> str:
         f"{1000 * found.zmp_rms_alike_m:.2f}",
         f"{1000 * found.zmp_rms_m:.2f}",
     ]
-    return _line(cells)
-
-
-def _line(cells: list[str]) -> str:
-    return f"| {' | '.join(cells)} |"
+    return markdown.row(cells)
 
 
 if __name__ == "__main__":

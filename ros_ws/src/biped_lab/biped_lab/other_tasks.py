@@ -28,7 +28,8 @@ from biped_common.errors import BipedError
 from biped_common.settings import from_mapping, nested, overlay, to_mapping
 from biped_lab import library_learners
 from biped_lab.control_task import ControlTask, Learned, learn
-from biped_lab.report.tables import NOTHING, Table
+from biped_lab.markdown import Table
+from biped_lab.report.tables import NOTHING
 from biped_lab.rivals.random_choice import RandomChoice
 from biped_lab.statistics.comparison import compare
 from learner_node.methods import MakeLearner, MethodSettings, make_learner

@@ -35,6 +35,7 @@ from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_common.command_line import positive
 from biped_common.seeds import learner_stream, robot_stream
+from biped_lab.markdown import Table
 from biped_lab.searches.plan import PlanSpace
 from biped_lab.searches.search_contestant import PlannedWalk
 from biped_lab.searches.searcher import Walked
@@ -186,15 +187,9 @@ def main() -> int:
             column(settings, way, seeds, options.walks, options.while_learning)
         )
         print(f"{name}: walked", file=sys.stderr, flush=True)
-    print(_line(["disturbance", *columns]))
-    print(_line(["---"] * (1 + len(columns))))
-    for label, *cells in zip(DISTURBANCES, *columns.values(), strict=True):
-        print(_line([label, *cells]))
+    rows = zip(DISTURBANCES, *columns.values(), strict=True)
+    print(Table(("disturbance", *columns), tuple(rows)).markdown(), end="")
     return 0
-
-
-def _line(cells: list[str]) -> str:
-    return f"| {' | '.join(cells)} |"
 
 
 if __name__ == "__main__":

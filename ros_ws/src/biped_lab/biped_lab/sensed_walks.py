@@ -29,6 +29,7 @@ from biped_bringup.walker import Walker
 from biped_common.command_line import positive
 from biped_common.seeds import robot_stream
 from biped_common.settings import to_mapping
+from biped_lab.markdown import Table
 from biped_lab.robustness import Learned, learn
 from sim_node.control_tick import ControlTick
 from sim_node.sensed_world import SensedWorld
@@ -123,15 +124,9 @@ def main() -> int:
             cell([walked(w, truth, n, worse) for n, w in learned.items()], limit_m)
             for worse in SENSES.values()
         ]
-    print(_line(["walked by", *columns]))
-    print(_line(["---"] * (1 + len(columns))))
-    for label, *cells in zip(SENSES, *columns.values(), strict=True):
-        print(_line([label, *cells]))
+    rows = zip(SENSES, *columns.values(), strict=True)
+    print(Table(("walked by", *columns), tuple(rows)).markdown(), end="")
     return 0
-
-
-def _line(cells: list[str]) -> str:
-    return f"| {' | '.join(cells)} |"
 
 
 if __name__ == "__main__":

@@ -27,6 +27,7 @@ from biped_bringup.run_settings import (
 from biped_bringup.walker import Responder, Walker
 from biped_common.command_line import positive
 from biped_common.seeds import robot_stream
+from biped_lab import markdown
 from learner_node.methods import make_learner
 from learner_node.walking.session import LearningSession
 from msgs_json.episode_result import EpisodeResult
@@ -113,10 +114,9 @@ def main() -> int:
     options = parser.parse_args()
     settings = load_settings(options.preset)
     seeds = range(options.first, options.first + options.seeds)
-    head = ["learned on", "learned", "episodes, median (most)"]
-    head += [f"walks on {plant}" for plant in PLANTS]
-    print(_line(head))
-    print(_line(["---"] * len(head)))
+    columns = ["learned on", "learned", "episodes, median (most)"]
+    columns += [f"walks on {plant}" for plant in PLANTS]
+    print(markdown.head(columns))
     for name, plants in LEARNED_ON.items():
         found = [learn(settings, seed, plants) for seed in seeds]
         learned = [session for session in found if session is not None]
@@ -133,17 +133,13 @@ def _row(
         cells.append(f"{statistics.median(episodes):g} ({max(episodes)})")
     else:
         cells.append("none")
-    return _line(
+    return markdown.row(
         cells
         + [
             str(sum(completed(session, settings, plant) for session in learned))
             for plant in PLANTS
         ]
     )
-
-
-def _line(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"
 
 
 if __name__ == "__main__":

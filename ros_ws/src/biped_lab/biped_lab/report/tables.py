@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
+from biped_lab.markdown import Table
 from biped_lab.report.estimates import compared, ratio_of_means, restricted_mean
 from biped_lab.report.finished import EPISODES, FIXED_SHARE, SIMULATED, FinishedRuns
 from biped_lab.results import ResultsError, StudyResults
@@ -16,21 +16,6 @@ from biped_lab.statistics.comparison import compare
 from biped_lab.statistics.permutation import holm
 
 NOTHING = "–"
-
-
-@dataclass(frozen=True)
-class Table:
-    """Text in rows."""
-
-    head: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-    def markdown(self) -> str:
-        """Return the table in Markdown."""
-        marks = ("---", *["---:"] * (len(self.head) - 1))
-        lines = (self.head, marks, *self.rows)
-        escaped = ((cell.replace("|", r"\|") for cell in line) for line in lines)
-        return "".join(f"| {' | '.join(cells)} |\n" for cells in escaped)
 
 
 def findings_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
