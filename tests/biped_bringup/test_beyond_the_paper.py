@@ -33,6 +33,7 @@ def test_the_whole_walk_is_learned_in_few_episodes(training):
     assert run.greedy_walk().completed
 
 
+@pytest.mark.thorough
 def test_a_walk_that_would_fall_is_learned(training):
     settings = load_settings("t_ds_080")
     assert uncorrected(settings).end_cause is EndCause.FEET_UNLOADED
