@@ -35,7 +35,6 @@ from sim_node.pace_watch import PaceWatch
 from sim_node.pilot import Pilot, check_stance
 from sim_node.planned_walk import PlannedWalk
 from sim_node.realtime import Punctuality, RealtimeLoop
-from sim_node.sensed_world import SensedWorld
 from sim_node.settings import ROBOT, SimNodeSettings
 from sim_node.tick_publisher import TickPublisher
 
@@ -317,10 +316,7 @@ class SimNode(GuardedNode):
 
     def _ready(self) -> bool:
         """Return whether the robot is on its feet; a real one is put there by hand."""
-        if self._pilot is None:
-            return False
-        world = self._pilot.biped.world
-        return not isinstance(world, SensedWorld) or world.hardware.ready()
+        return self._pilot is not None and self._pilot.biped.world.ready()
 
     def _silent_peer(self) -> str:
         for topic, peer in (

@@ -48,6 +48,10 @@ class Physics(Protocol):
             servo: one of those that the table of engines says it has.
         """
 
+    def ready(self) -> bool:
+        """Return whether a walk can begin; a real robot is put on its feet by hand."""
+        return True
+
     def set_mass_factors(self, factors: Array) -> None:
         """Scale the nominal mass and inertia of the (13,) links."""
 

@@ -65,6 +65,10 @@ class SensedWorld(Physics):
         self._observer = Observer(robot)
         self._kept: dict[int, ObserverState] = {}
 
+    def ready(self) -> bool:
+        """Return whether a walk can begin."""
+        return self.hardware.ready()
+
     def set_mass_factors(self, factors: Array) -> None:
         """Have the links differ from what is planned with."""
         self.hardware.set_mass_factors(factors)

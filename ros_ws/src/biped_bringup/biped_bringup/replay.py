@@ -91,7 +91,7 @@ class ReplayingWalker(Walker):
         """Plan the gait and build the world; know no walk yet.
 
         Args:
-            settings: of the whole run, without random disturbances.
+            settings: of the whole run, without chance (`SimSettings.random`).
             rng: not drawn from.
             memory_bytes: bound of the tree. When a walk has led beyond it, the tree
                 forgets half of itself, first what was walked least recently.
@@ -100,7 +100,7 @@ class ReplayingWalker(Walker):
             ValueError: chance has a part in the walks.
         """
         if settings.sim.random:
-            raise ValueError("walks with random disturbances cannot be replayed")
+            raise ValueError("walks in which chance has a part cannot be replayed")
         super().__init__(settings, rng)
         self._memory_bytes = memory_bytes
         self.used_bytes = 0

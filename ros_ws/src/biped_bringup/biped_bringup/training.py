@@ -69,7 +69,9 @@ class TrainingRun:
         self.replay_off: str | None = None
         """Why walks are not replayed, in words; None where they are."""
         if settings.sim.random:
-            self.replay_off = "random disturbances make every walk different"
+            self.replay_off = (
+                "random disturbances or noisy sensors make every walk different"
+            )
         elif replay_bytes == 0:
             self.replay_off = "as asked"
         self.walker = (
@@ -83,7 +85,7 @@ class TrainingRun:
         self.notes: dict[str, Any] = {}
         """What the run's owner keeps with it, through checkpoints; anything of JSON."""
         self.cpu_s = 0.0
-        self.written_by = _versions()
+        self.written_by = versions()
         """Package versions that wrote the checkpoint gone on from."""
         self.setting_changes = ""
         """Settings that differ from those of the checkpoint, in words."""
@@ -93,7 +95,7 @@ class TrainingRun:
         """Packages that differ from those of the checkpoint, in words."""
         return [
             f"{name} {self.written_by.get(name, 'unknown')} -> {now}"
-            for name, now in _versions().items()
+            for name, now in versions().items()
             if self.written_by.get(name) != now
         ]
 
@@ -181,7 +183,7 @@ class TrainingRun:
             "robot_rng": self._robot_rng.bit_generator.state,
             "cpu_s": self.cpu_s,
             "walked_ticks": vars(self.walker.ticks),
-            "versions": _versions(),
+            "versions": versions(),
             "notes": self.notes,
         }
         write_checkpoint(path, header, self.session.arrays())
@@ -283,7 +285,8 @@ class TrainingRun:
         }
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
+    """Return the packages that are here whose version can change a walk's last bit."""
     found = {}
     for name in _PACKAGES:
         with suppress(PackageNotFoundError):  # an engine that is not used here

@@ -80,16 +80,18 @@ def learn(settings: RunSettings, seed: int) -> Learned | None:
 def search(settings: RunSettings, seed: int) -> Learned | None:
     """Return the walk that tail search finds, None where it does not in time."""
     space = PlanSpace.of_knots(settings)
-    rng = np.random.default_rng(learner_stream(seed))
-    searcher = TailSearch(TailSearchOptions(), space, rng)
+    searching, disturbing = (
+        np.random.default_rng(stream(seed)) for stream in (learner_stream, robot_stream)
+    )
+    searcher = TailSearch(TailSearchOptions(), space, searching)
     whole = replace(
         settings.learner.schedule, first_target_s=settings.gait.duration_s, run_on=False
     )
     learner = replace(settings.learner, schedule=whole)
     task = WalkTask(learner, settings.gait.walk_ticks)
     # Where chance has a part in the walks, none is like another.
-    replays = not settings.sim.random
-    with closing((ReplayingWalker if replays else Walker)(settings, rng)) as walker:
+    kind = Walker if settings.sim.random else ReplayingWalker
+    with closing(kind(settings, disturbing)) as walker:
         for episode in range(MOST_EPISODES):
             chosen = space.nearest(searcher.ask(space.points))
             result = walker.walk(PlannedWalk(task, space, chosen))

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from biped_bringup.run_settings import RunSettings
-from biped_bringup.training import TrainingRun
+from biped_bringup.training import TrainingRun, versions
 from biped_bringup.walker import Responder, Walker
 from biped_common.errors import BipedError
 from biped_common.timing import TICKS_PER_LEARNING_TICK
@@ -27,8 +25,6 @@ from trajectory_node.waist_reference import WaistReference
 
 _SEED = 0
 """Of the disturbances, if any: as `biped walk` draws them where it is given no seed."""
-_PACKAGES = ("biped", "numpy", "numba", "pybullet", "mujoco-core")
-"""Whose versions can change a walk's last bit."""
 
 
 class NoWalkError(BipedError, ValueError):
@@ -184,10 +180,7 @@ def _record(
 
 def _facts(record: WalkRecord) -> dict[str, str]:
     assert record.result is not None
-    found = []
-    for name in _PACKAGES:
-        with suppress(PackageNotFoundError):  # an engine that is not used here
-            found.append(f"{name} {version(name)}")
+    found = [f"{name} {version}" for name, version in versions().items()]
     return {
         "walked here with": ", ".join(found),
         "trajectory SHA-256": record.result.trajectory_sha256,

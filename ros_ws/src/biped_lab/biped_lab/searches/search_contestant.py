@@ -110,7 +110,7 @@ class SearchContestant:
             raise SettingsError(
                 "sim.disturbances",
                 to_mapping(settings.sim.disturbances),
-                "must not be random where plans are searched",
+                "must not be random, nor sensors noisy, where plans are searched",
             )
         self.settings = settings
         self._space = kind.space(settings)
