@@ -14,6 +14,7 @@ import yaml
 from PIL import Image
 from playwright.sync_api import Browser as Chromium
 from playwright.sync_api import Page
+from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from tests.graph.domains import MODULE, own_domain
 
 from biped_bringup.node_parameters import node_parameters
@@ -100,6 +101,14 @@ class Browser:
     def shows(self, text: str) -> None:
         """Wait for a text."""
         self.page.get_by_text(text).first.wait_for(timeout=1000 * TIMEOUT_S)
+
+    def soon(self, text: str) -> bool:
+        """Return whether a text is shown within a few seconds."""
+        try:
+            self.page.get_by_text(text).first.wait_for(timeout=5000.0)
+        except PlaywrightTimeout:
+            return False
+        return True
 
     def press(self, button: str) -> None:
         self.page.get_by_role("button", name=button, exact=True).click(
