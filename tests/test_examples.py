@@ -27,6 +27,7 @@ def test_every_program_is_run_here() -> None:
     assert {file.name for file in EXAMPLES.glob("*.py")} == set(SAID)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("name", "said"), SAID.items())
 def test_a_program_does_what_it_says(name: str, said: str, tmp_path: Path) -> None:
     for package in NEEDS.get(name, ()):

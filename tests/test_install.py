@@ -108,6 +108,7 @@ def checkout(tmp_path: Path) -> Checkout:
 LOCKED = {"alpha": "1.0", "beta": "1.0", "toy": "1"}
 
 
+@pytest.mark.thorough
 def test_a_newer_release_in_the_index_changes_nothing(checkout: Checkout) -> None:
     add_release(checkout.index, "beta", "2.0")
     done = checkout.make("install")

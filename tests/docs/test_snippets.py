@@ -82,6 +82,7 @@ def allowed_statuses(line: str) -> set[int]:
     PARTS,
     ids=[f"{page.relative_to(TOP)}: {section}" for page, section in PARTS],
 )
+@pytest.mark.thorough
 def test_what_a_section_shows_works(
     page: Path, section: str, folder: Path, biped: Callable[..., Outcome]
 ) -> None:

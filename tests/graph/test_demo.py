@@ -11,6 +11,7 @@ from biped_bringup.cli import demo
 from biped_bringup.cli.main import parser
 
 
+@pytest.mark.thorough
 def test_the_static_walk_is_seen_to_fail_and_a_short_run_learns_nothing(
     biped_process, tmp_path, domain, monkeypatch
 ):

@@ -113,6 +113,7 @@ def ended(tmp_path_factory):
     return said, out
 
 
+@pytest.mark.thorough
 def test_a_greedy_walk_that_is_walked_ends_with_0(domain, learned):
     ended = up(domain, learned, "--greedy")
     assert ended.returncode == 0, ended.stderr

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from tests.thorough import first_always
 
 from sim_node.engines import ENGINES
 
@@ -47,7 +48,7 @@ EVERY_DISTURBANCE = pytest.mark.parametrize(
 )
 
 
-@pytest.fixture(scope="module", params=list(ENGINES))
+@pytest.fixture(scope="module", params=first_always(ENGINES))
 def engine(request):
     return request.param
 

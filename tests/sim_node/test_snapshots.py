@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.thorough import first_always
 
 from msgs_json.end_cause import EndCause
 from sim_node.engines import ENGINES
@@ -29,7 +30,7 @@ ANYWHERE = pytest.mark.parametrize(
 END = 160
 
 
-@pytest.fixture(scope="module", params=list(ENGINES))
+@pytest.fixture(scope="module", params=first_always(ENGINES))
 def engine(request):
     return request.param
 

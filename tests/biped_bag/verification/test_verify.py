@@ -311,6 +311,7 @@ def test_numbers_that_no_walk_has_are_refused(run, messages):
 
 @pytest.mark.parametrize("cause", [c for c in EndCause if c.from_outside])
 @pytest.mark.parametrize("answered", [True, False])
+@pytest.mark.thorough
 def test_a_walk_that_was_given_up_is_no_difference(cause, answered):
     given_up = RecordedRun(load_settings("quick"), SEED)
     given_up.walk(1)

@@ -3,6 +3,7 @@
 import subprocess
 
 import pytest
+from tests.thorough import first_always
 
 from biped_lab.progress import StudyWatch
 from biped_lab.run_folder import (
@@ -23,7 +24,7 @@ def truncate(path):
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
 
 
-@pytest.mark.parametrize("name", [RUN_FILE, MEMORY_FILE, COST_FILE])
+@pytest.mark.parametrize("name", first_always([RUN_FILE, MEMORY_FILE, COST_FILE]))
 def test_a_truncated_file_of_an_unfinished_run_is_told_and_the_others_go_on(lab, name):
     damaged, other = planned(lab, WALKS)
     for run in (damaged, other):

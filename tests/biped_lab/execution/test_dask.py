@@ -67,6 +67,7 @@ def connect(address):
         pass
 
 
+@pytest.mark.thorough
 def test_a_cluster_carries_a_study_out_though_a_worker_is_killed_in_the_middle(
     cluster, tmp_path, is_the_same
 ):

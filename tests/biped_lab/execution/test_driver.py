@@ -22,6 +22,7 @@ def test_a_run_that_raises_is_told_in_a_line_with_the_place(tmp_path, odd_contes
     assert "odd_contestants.py, line" in failure.reason
 
 
+@pytest.mark.thorough
 def test_a_sitting_carries_out_the_first_seeds_and_no_more(tmp_path, biped):
     study = tmp_path / "walks.yaml"
     study.write_text(json.dumps(WALKS | {"seeds": {"first": 1, "count": 3}}))

@@ -51,6 +51,7 @@ def driver(launch, tmp_path):
     return process
 
 
+@pytest.mark.thorough
 def test_a_driver_that_is_killed_takes_its_workers_with_it_and_goes_on(
     driver, tmp_path, is_the_same
 ):

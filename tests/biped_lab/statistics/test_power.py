@@ -22,6 +22,7 @@ def needed(ratio, scatter, stuck=0.0, comparisons=1):
     )
 
 
+@pytest.mark.thorough
 def test_seeds_agree_with_the_theory_of_large_samples():
     z = norm.isf(0.025 / 4) + norm.ppf(0.8)
     # Of a t-test, divided by the efficiency of Wilcoxon's test relative to it.
@@ -29,6 +30,7 @@ def test_seeds_agree_with_the_theory_of_large_samples():
     assert needed(1.3, 0.3, comparisons=4) == pytest.approx(known, rel=0.12)
 
 
+@pytest.mark.thorough
 def test_the_power_with_other_studies_is_what_was_asked_for():
     scenario = Scenario(1.5, 0.4, 0.1)
     seeds = needed(1.5, 0.4, 0.1)
@@ -37,6 +39,7 @@ def test_the_power_with_other_studies_is_what_was_asked_for():
     assert 0.75 < power < 0.86  # both shares are of 1,000 studies
 
 
+@pytest.mark.thorough
 def test_scatter_stuck_runs_and_other_comparisons_cost_seeds():
     least = needed(2.0, 0.3)
     assert needed(1.5, 0.3) > least

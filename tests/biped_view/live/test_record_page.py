@@ -102,6 +102,7 @@ def record_address():
     page.close()
 
 
+@pytest.mark.thorough
 def test_a_walk_plays_stops_and_is_scrubbed(record_address, open_tab):
     tab = open_tab(record_address)
     tab.shows("Playing")

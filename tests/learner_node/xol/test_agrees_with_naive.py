@@ -140,6 +140,7 @@ def run_of_many_states():
     return case, seeded_calls(case, np.random.default_rng(0), n_points=150)
 
 
+@pytest.mark.thorough
 def test_more_states_than_first_fit_end_in_the_same_memory():
     assert first_disagreement(*run_of_many_states()) is None
 
