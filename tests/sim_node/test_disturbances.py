@@ -145,6 +145,19 @@ def test_the_zmp_gives_way_in_the_direction_of_the_push(new_walker, static_walk)
     assert moved @ direction > 10 * abs(moved @ across)
 
 
+@pytest.mark.parametrize("engine", ["mujoco", "kinematic"])
+def test_other_engines_feel_a_push_about_alike(build_walker, static_walk, engine):
+    push = {"push_force_n": 10.0, "push_time_s": 0.1, "push_duration_s": 0.02}
+    shifts_m = []
+    for each in ("pybullet", engine):
+        calm, pushed = (build_walker(STURDY, d, engine=each) for d in ({}, push))
+        for walker in (calm, pushed):
+            walker.walk(static_walk[:6])
+            walker.robot.close()
+        shifts_m.append((pushed.zmp_m - calm.zmp_m)[50:60].mean(axis=0))
+    np.testing.assert_allclose(*shifts_m, rtol=0, atol=0.003)
+
+
 # -- friction, masses and torques ------------------------------------------------------
 
 

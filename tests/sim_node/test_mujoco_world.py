@@ -169,18 +169,6 @@ def test_a_push_lasts_one_tick(world):
     assert speeds[1] == pytest.approx(speeds[0], rel=0.01)
 
 
-def test_a_push_is_felt_as_on_the_other_engine(build_walker, static_walk):
-    push = {"push_force_n": 10.0, "push_time_s": 0.1, "push_duration_s": 0.02}
-    shifts_m = []
-    for engine in ("pybullet", "mujoco"):
-        calm, pushed = (build_walker(STURDY, d, engine=engine) for d in ({}, push))
-        for walker in (calm, pushed):
-            walker.walk(static_walk[:6])
-            walker.robot.close()
-        shifts_m.append((pushed.zmp_m - calm.zmp_m)[50:60].mean(axis=0))
-    np.testing.assert_allclose(*shifts_m, rtol=0, atol=0.003)
-
-
 def test_the_floor_carries_the_masses_drawn(new_walker, static_walk):
     walker = new_walker(STURDY, {"mass_error": 0.1}, seed=3)
     walker.walk(static_walk[:8])
