@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from biped_common.settings import Settings, setting
 from biped_lab.learner_contestant import learner_entry
-from biped_lab.rivals.tabular import TabularLearner
 from learner_node.learner import Push
 from learner_node.problem import Problem
 from learner_node.states import StateSettings
+from learner_node.tabular import TabularLearner
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from biped_common.settings import setting
 from biped_lab.learner_contestant import learner_entry
 from biped_lab.rivals.episodic_ps import EpisodicSettings
-from biped_lab.rivals.tabular import TabularLearner
 from learner_node.problem import Problem
 from learner_node.states import StateSettings
+from learner_node.tabular import TabularLearner
 from learner_node.xol.queue import DecisionQueue
 
 

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_lab.learner_contestant import learner_entry
-from biped_lab.rivals.tabular import TabularLearner
 from learner_node.learner import Push
 from learner_node.problem import Problem
 from learner_node.q_lambda import QLambdaSettings
 from learner_node.states import StateSettings, doubled
+from learner_node.tabular import TabularLearner
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
-"""What the rivals have in common: states, a table Q of sub-rules, the seam's chores.
+"""What tabular learners have in common: states, a table Q, the seam's chores.
 
 States are those of XoL; they are selected from as in Section 3.5, by the very functions
-of XoL. What a rival learns, and when, stands in its own file.
+of XoL. What a learner learns, and when, stands in its own file: `q_lambda.py` here, the
+other rivals in `biped_lab/rivals`.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ class TabularLearner(ABC):
         """Take no notice."""
         self.problem.check_penalty(penalty)
 
-    def finish_subtask(self) -> None:  # noqa: B027 - a rival may well do nothing
+    def finish_subtask(self) -> None:  # noqa: B027 - it may well do nothing
         """Fix nothing."""
 
     def finish_episode(self) -> None:
