@@ -31,7 +31,7 @@ ENGINES: Final = {
         "sim_node.mujoco_world",
         "MuJoCoWorld",
         extra="mujoco",
-        servos=("ideal", "lag", "pd"),
+        servos=("ideal", "lag", "pid"),
     ),
     "kinematic": Engine(
         "sim_node.kinematic_world",

@@ -49,7 +49,7 @@ class MuJoCoWorld(Physics):
         self._model = model = _model(robot, friction)
         self._torque_limits_nm = torque_limits_nm
         self._servo = servo
-        self._pulls = servo.kind == "pd"
+        self._pulls = servo.kind == "pid"
         self._data = mujoco.MjData(model)
         self._torso = model.body(TORSO).id
         self._links = np.array([model.body(name).id for name in LINK_NAMES])
@@ -150,20 +150,27 @@ class MuJoCoWorld(Physics):
     # -- servos and soles ----------------------------------------------------------
 
     def _pull(self, q: Array, dq: Array) -> None:
-        """Let PD servos pull; with a delay, as they would have a tick ago."""
+        """Let PID servos pull; with a delay, as they would have a tick ago.
+
+        The state of the engine keeps the torques that a delay holds back, and behind
+        them the integrals [rad].
+        """
         data, servo = self._data, self._servo
+        late, integral = data.userdata[:_N_JOINTS], data.userdata[_N_JOINTS:]
         position = q - data.qpos[self._positions]
         velocity = dq - data.qvel[self._dofs]
-        torques = servo.stiffness_nm_rad * position + servo.damping_nm_s_rad * velocity
-        torques = np.clip(torques, -self._torque_limits_nm, self._torque_limits_nm)
-        now = data.userdata.copy() if servo.delay_ticks else torques
-        data.qfrc_applied[self._dofs] = now
-        data.userdata[:] = torques
+        grown = integral + servo.integral_per_s * CONTROL_PERIOD_S * position
+        wanted = servo.stiffness_nm_rad * (position + grown)
+        wanted += servo.damping_nm_s_rad * velocity
+        torques = np.clip(wanted, -self._torque_limits_nm, self._torque_limits_nm)
+        data.qfrc_applied[self._dofs] = late if servo.delay_ticks else torques
+        late[:] = torques
+        integral[:] = np.where(torques == wanted, grown, integral)
 
     def _ask_servos(self, q: Array, dq: Array) -> slice:
         """Ask for the velocities that lead to the next references, or for standstill.
 
-        Servos lead somewhere; the gears of PD servos only brake. One without torque or
+        Servos lead somewhere; the gears of PID servos only brake. One without torque or
         friction has no row.
 
         Returns:
@@ -223,7 +230,7 @@ def _model(robot: Robot, friction: float) -> mujoco.MjModel:
     options.tolerance = 1e-14
     # The robot's own limits of motion end a walk; no joint has a stop.
     options.disableflags |= mujoco.mjtDisableBit.mjDSBL_LIMIT
-    spec.nuserdata = _N_JOINTS  # torques that a delay holds back
+    spec.nuserdata = 2 * _N_JOINTS  # of PID servos; see _pull
     spec.body(TORSO).add_freejoint()
     floor = spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0.0, 0.0, 1.0)

@@ -1,12 +1,14 @@
-"""What drives the joints: ideal servos, servos that lag, or PD controllers.
+"""What drives the joints: ideal servos, servos that lag, or PID controllers.
 
 A lagging servo takes back shares of its errors in position and velocity per tick,
-whatever the load, as far as its torque goes. A PD servo pulls by
+whatever the load, as far as its torque goes. A PID servo pulls by
 
-    u = stiffness (q^ - q) + damping (dq^ - dq),  at most its torque limit,
+    u = stiffness (e + integral) + damping de,  at most its torque limit,
 
-against the load and against its rotor's inertia and the gear's dry friction, and gives
-way under load. q^ and dq^ are the references of the tick.
+against the load and against its rotor's inertia and the gear's dry friction. e = q^ - q
+and de = dq^ - dq are its errors to the references of the tick; the integral of
+`integral_per_s` e stands still while the torque is at its limit. It gives way under
+load until its integral has grown.
 """
 
 from __future__ import annotations
@@ -14,6 +16,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
+
+import numpy as np
 
 from biped_common.settings import Settings, SettingsError, setting
 from biped_common.timing import CONTROL_PERIOD_S
@@ -33,24 +37,30 @@ class ServoSettings(Settings):
     kind: str = setting(
         "ideal",
         "",
-        "ideal: on its reference; lag: follows it; pd: gives way to the load, too",
-        choices=("ideal", "lag", "pd"),
+        "ideal: on its reference; lag: follows it; pid: gives way to the load, too",
+        choices=("ideal", "lag", "pid"),
     )
     bandwidth_hz: float = setting(
         10.0, "Hz", "of lag, critically damped", above=0.0, upper=250.0
     )
-    stiffness_nm_rad: float = setting(30e3, "N m/rad", "of pd, on position", above=0.0)
+    stiffness_nm_rad: float = setting(30e3, "N m/rad", "of pid, on position", above=0.0)
     damping_nm_s_rad: float = setting(
-        125.0, "N m s/rad", "of pd, on velocity", above=0.0
+        125.0, "N m s/rad", "of pid, on velocity", above=0.0
+    )
+    integral_per_s: float = setting(
+        3.0,
+        "1/s",
+        "of pid, what a lasting error grows by, as the stiffness feels it; 0: none",
+        lower=0.0,
     )
     rotor_inertia_kg_m2: float = setting(
-        0.5, "kg m^2", "of pd, seen from the joint", above=0.0
+        0.5, "kg m^2", "of pid, seen from the joint", above=0.0
     )
-    friction_nm: float = setting(1.0, "N m", "of pd, dry, in the gear", lower=0.0)
+    friction_nm: float = setting(1.0, "N m", "of pid, dry, in the gear", lower=0.0)
     delay_ticks: int = setting(
         1,
         "control ticks",
-        "of pd, until what was measured has an effect",
+        "of pid, until what was measured has an effect",
         lower=0,
         upper=1,
     )
@@ -67,27 +77,31 @@ class ServoSettings(Settings):
         return ServoShares((1.0 - p) ** 2, 1.0 - p**2)
 
     def check_together(self) -> None:
-        """Refuse gains of pd that are unstable at 2 ms.
+        """Refuse gains of pid that are unstable at 2 ms.
 
-        No mode of the robot has less inertia than the rotors, so that it is stable if a
-        rotor alone is. With its gains K and D in ticks, that moves by
-        (z - 1)^2 + D (z - 1) + K z = 0 without the delay, and by
-        z (z - 1)^2 + D (z - 1) + K z = 0 with it; the bounds are Jury's.
+        They are judged on a rotor alone, which no mode of the robot has less inertia
+        than. With gains K, D and R per tick, it moves by
+
+            z^delay (z - 1)^2 + D (z - 1) + K z (1 + R z / (z - 1)) = 0.
+
+        What an integral does to the whole robot, which is heavier, is not asked.
         """
-        if self.kind != "pd":
+        if self.kind != "pid":
             return
         inertia = self.rotor_inertia_kg_m2
         stiffness = self.stiffness_nm_rad * CONTROL_PERIOD_S**2 / inertia
         damping = self.damping_nm_s_rad * CONTROL_PERIOD_S / inertia
-        if self.delay_ticks:
-            stable = damping < 1.0 and stiffness < damping * (1.0 - damping)
-        else:
-            stable = stiffness + 2.0 * damping < 4.0
-        if not stable:
+        growth = self.integral_per_s * CONTROL_PERIOD_S
+        z, still = np.poly1d([1.0, 0.0]), np.poly1d([1.0, -1.0])
+        motion = z**self.delay_ticks * still**2 + damping * still + stiffness * z
+        if growth > 0.0:
+            motion = motion * still + stiffness * growth * z**2
+        if np.abs(motion.roots).max() >= 1.0:
             raise SettingsError(
                 "stiffness_nm_rad",
                 self.stiffness_nm_rad,
                 f"unstable at 2 ms with damping_nm_s_rad = {self.damping_nm_s_rad}, "
+                f"integral_per_s = {self.integral_per_s}, "
                 f"rotor_inertia_kg_m2 = {inertia}, delay_ticks = {self.delay_ticks}",
             )
 

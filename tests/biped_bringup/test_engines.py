@@ -68,10 +68,10 @@ def test_a_disturbance_without_effect_is_refused_in_one_line(biped):
 
 
 def test_a_servo_that_an_engine_has_not_is_refused_in_one_line(biped):
-    outcome = biped("check", *KINEMATIC, "--set", "sim.servo.kind=pd")
+    outcome = biped("check", *KINEMATIC, "--set", "sim.servo.kind=pid")
     assert (outcome.status, outcome.err) == (
         2,
-        "biped check: sim.servo.kind = 'pd': must be one of ideal with engine = "
+        "biped check: sim.servo.kind = 'pid': must be one of ideal with engine = "
         "kinematic\n",
     )
 

@@ -19,9 +19,9 @@ EPISODES = 4
     [
         load_settings("quick", EXAMPLES / "tall_robot.yaml"),
         load_settings("quick", None, ["sim.engine=kinematic"]),
-        load_settings("quick", None, ["sim.engine=mujoco", "sim.servo.kind=pd"]),
+        load_settings("quick", None, ["sim.engine=mujoco", "sim.servo.kind=pid"]),
     ],
-    ids=["tall robot", "kinematic engine", "MuJoCo, PD servos"],
+    ids=["tall robot", "kinematic engine", "MuJoCo, PID servos"],
 )
 def test_the_graph_learns_what_plain_calls_learn(domain, settings):
     run = TrainingRun(settings, SEED)

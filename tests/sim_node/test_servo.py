@@ -97,11 +97,11 @@ def test_engines_lag_alike(driven, static_walk):
     assert worst[0] == pytest.approx(worst[1], rel=0.1)
 
 
-# -- pd --------------------------------------------------------------------------------
+# -- pid -------------------------------------------------------------------------------
 
 
-def test_a_pd_servo_gives_way_by_its_torque_over_its_stiffness(driven, static_walk):
-    robot, ticks = driven("mujoco", kind="pd", friction_nm=0.0)
+def test_a_pid_servo_gives_way_by_its_torque_over_its_stiffness(driven, static_walk):
+    robot, ticks = driven("mujoco", kind="pid", friction_nm=0.0, integral_per_s=0.0)
     robot.begin_walk(1)
     follow(robot, static_walk[:1])
     tick = ticks[-1]
@@ -110,8 +110,34 @@ def test_a_pd_servo_gives_way_by_its_torque_over_its_stiffness(driven, static_wa
     assert np.abs(error).max() > 1e-4
 
 
-def test_a_pd_servo_has_no_more_than_its_torque(driven, static_walk):
-    robot, ticks = driven("mujoco", kind="pd")
+def test_an_integral_takes_back_what_a_servo_gave_way(driven, static_walk):
+    errors = []
+    for integral_per_s in (0.0, 3.0):
+        robot, ticks = driven("mujoco", kind="pid", integral_per_s=integral_per_s)
+        robot.begin_walk(1)
+        follow(robot, static_walk[:100])
+        errors.append(worst_error_rad(ticks[-10:]))  # on one foot
+    assert errors[1] < 0.3 * errors[0]
+
+
+def test_an_integral_stands_still_while_the_torque_is_at_its_limit(driven):
+    pulled = []
+    for integral_per_s in (0.0, 3.0):
+        robot, _ = driven("mujoco", kind="pid", integral_per_s=integral_per_s)
+        world, aim, measured = robot.world, np.full(12, 1.0), np.empty(36)
+        world.place(IN_THE_AIR, np.zeros(12))
+        for _ in range(5):
+            world.step(aim, np.zeros(12), measured)  # more than there is torque for
+            aim = measured[:12] + 1.0
+        world.step(measured[:12].copy(), np.zeros(12), measured)
+        world.step(measured[:12].copy(), np.zeros(12), measured)
+        pulled.append(measured[24:].copy())
+    assert np.abs(pulled[0]).max() > 1.0
+    np.testing.assert_array_equal(*pulled)
+
+
+def test_a_pid_servo_has_no_more_than_its_torque(driven, static_walk):
+    robot, ticks = driven("mujoco", kind="pid")
     robot.begin_walk(1)
     robot.world.push((3000.0, 0.0, 0.0))
     robot.follow(static_walk[0])
@@ -123,7 +149,7 @@ def test_a_pd_servo_has_no_more_than_its_torque(driven, static_walk):
 
 @pytest.mark.parametrize("delay_ticks", [0, 1])
 def test_a_delay_holds_a_torque_back_for_a_tick(driven, delay_ticks):
-    robot, _ = driven("mujoco", kind="pd", delay_ticks=delay_ticks)
+    robot, _ = driven("mujoco", kind="pid", delay_ticks=delay_ticks)
     world, q, measured = robot.world, np.zeros(12), np.empty(36)
     world.place(IN_THE_AIR, q)
     pulled = []
@@ -134,7 +160,7 @@ def test_a_delay_holds_a_torque_back_for_a_tick(driven, delay_ticks):
 
 
 @pytest.mark.parametrize("delay_ticks", [0, 1])
-@pytest.mark.parametrize("kind", ["lag", "pd"])
+@pytest.mark.parametrize("kind", ["lag", "pid"])
 def test_a_walk_goes_on_bit_for_bit_from_a_state_kept(
     driven, static_walk, kind, delay_ticks
 ):
@@ -150,25 +176,34 @@ def test_a_walk_goes_on_bit_for_bit_from_a_state_kept(
 # -- stability -------------------------------------------------------------------------
 
 
-def largest_root(servo):
-    """Return the modulus of the slowest mode of a rotor alone, in ticks."""
+def slowest_mode(servo):
+    """Return the largest modulus by which a mode of a rotor alone moves in a tick."""
     gain = servo.stiffness_nm_rad * DT_S**2 / servo.rotor_inertia_kg_m2
     damping = servo.damping_nm_s_rad * DT_S / servo.rotor_inertia_kg_m2
-    free = np.poly1d([1.0, -2.0, 1.0])
-    pulled = np.poly1d([damping + gain, -damping])
-    delayed = np.poly1d([1.0, 0.0]) if servo.delay_ticks else 1.0
-    return np.abs((free * delayed + pulled).roots).max()
+    position, speed, integral, late = np.eye(4)  # what a tick begins with
+    grown = integral - servo.integral_per_s * DT_S * position
+    pull = gain * (grown - position) - damping * speed
+    speed = speed + (late if servo.delay_ticks else pull)
+    tick = np.array([position + speed, speed, grown, pull])
+    if servo.integral_per_s == 0.0:  # nothing grows or fades
+        tick = np.delete(np.delete(tick, 2, axis=0), 2, axis=1)
+    return np.abs(np.linalg.eigvals(tick)).max()
 
 
-@given(st.floats(1.0, 1e6), st.floats(0.1, 3e3), st.floats(0.01, 5.0), st.booleans())
-def test_gains_are_refused_exactly_where_a_rotor_alone_is_unstable(
-    stiffness, damping, inertia, delayed
+@given(
+    st.floats(1.0, 1e6),
+    st.floats(0.1, 3e3),
+    st.floats(0.01, 5.0),
+    st.sampled_from([0.0, 3.0, 30.0]),
+    st.booleans(),
+)
+def test_gains_are_refused_where_a_rotor_alone_is_unstable(
+    stiffness, damping, inertia, integral, delayed
 ):
-    gains = stiffness, damping, inertia, 0.0, int(delayed)
-    ideal = ServoSettings("ideal", 10.0, *gains)
-    largest = largest_root(ideal)
+    gains = stiffness, damping, integral, inertia, 0.0, int(delayed)
+    largest = slowest_mode(ServoSettings("ideal", 10.0, *gains))
     try:
-        ServoSettings("pd", 10.0, *gains)
+        ServoSettings("pid", 10.0, *gains)
     except SettingsError as error:
         assert "unstable at 2 ms with damping_nm_s_rad = " in str(error)
         assert largest > 1.0 - 1e-6
@@ -183,7 +218,7 @@ def test_gains_are_refused_exactly_where_a_rotor_alone_is_unstable(
     ("engine", "kind"),
     [
         (engine, kind)
-        for engine, kind in itertools.product(ENGINES, ("ideal", "lag", "pd"))
+        for engine, kind in itertools.product(ENGINES, ("ideal", "lag", "pid"))
         if kind not in ENGINES[engine].servos
     ],
 )
