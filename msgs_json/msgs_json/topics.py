@@ -146,9 +146,9 @@ HARDWARE_SOLES = tuple(
     for side in ("left", "right")
 )
 HARDWARE_COMMANDS = Topic(
-    "/forward_position_controller/commands",
-    "std_msgs/msg/Float64MultiArray",
-    meaning="12 joint positions to be reached at the next tick [rad]",
+    "/joint_trajectory_controller/joint_trajectory",
+    "trajectory_msgs/msg/JointTrajectory",
+    meaning="12 joint positions [rad] at the coming control ticks, look-ahead included",
 )
 EMERGENCY_STOP = Topic(
     "/emergency_stop",

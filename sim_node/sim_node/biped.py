@@ -30,7 +30,7 @@ from sim_node.joint_references import JointReferences, solve, standing
 from sim_node.limit_watch import LimitCounts, LimitWatch
 from sim_node.physics import Array
 from sim_node.plant import make_plant
-from sim_node.settings import SimSettings
+from sim_node.settings import ROBOT, SimSettings
 from sim_node.tick_sums import TickRows
 
 # The solver leaves the drop of the first contact behind well within 0.3 s.
@@ -185,7 +185,9 @@ class SimulatedBiped:
                 f"segment starts at tick {segment.first_tick}, "
                 f"the robot is at tick {self._watch.control_tick}"
             )
-        self.follow(segment, rows=segment.n_ticks + 1)
+        # A robot that keeps its own time is told the look-ahead, too.
+        ahead = self.settings.engine == ROBOT
+        self.follow(segment, rows=None if ahead else segment.n_ticks + 1)
         self._walk(segment.first_tick + segment.n_ticks)
         return self.observe()
 
@@ -220,6 +222,7 @@ class SimulatedBiped:
             watch.clock_ticks += 1  # no two observations share one
             return
         self._references = references
+        self.world.plan(references.q[self._row() + 1 : references.rows])
 
     def advance(self) -> None:
         """Walk one control tick along the references.

@@ -3,21 +3,26 @@
     python -m sim_node.hardware_node --ros-args -p pace:=realtime
 
 It publishes what the broadcasters of a controller manager publish, and follows what a
-forward_position_controller follows; nothing else of it is on the graph. Standing in for
+joint_trajectory_controller follows; nothing else of it is on the graph. Standing in for
 the person who puts a robot back on its feet: the service `/simulated_hardware/reset`.
 """
 
 from __future__ import annotations
 
 import sys
+import time
 from typing import Any
 
 import numpy as np
-from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Trigger
+from trajectory_msgs.msg import JointTrajectory
 
 from biped_common.seeds import robot_stream
-from biped_common.timing import CONTROL_PERIOD_S
+from biped_common.timing import (
+    CONTROL_PERIOD_S,
+    CONTROL_PERIOD_US,
+    TICKS_PER_LEARNING_TICK,
+)
 from biped_description.joints import JOINT_NAMES
 from biped_description.links import CONTACT_LINKS, TORSO
 from biped_description.robot import Robot
@@ -33,15 +38,18 @@ from biped_ros.running import run_node
 from msgs_json import topics
 from msgs_json.wire import RefusedMessageError
 from sim_node.engines import plant_of
-from sim_node.physics import Array
+from sim_node.followed_trajectory import FollowedTrajectory
 from sim_node.settings import HardwareNodeSettings
 from sim_node.simulated_hardware import SimulatedHardware
 
 NAME = "simulated_hardware"
 _SETTLING_TICKS = 150
-# In lockstep, after so long without a command, sensors are heard again: time stands
+# In lockstep, after so long without a trajectory, sensors are heard again: time stands
 # still for the robot, but it must not seem dead.
 _IDLE_S = 0.5
+_TICK_NS = CONTROL_PERIOD_US * 1000
+_MADE_UP_TICKS = 5
+"""Control ticks that a late timer makes up for."""
 
 
 class HardwareNode(GuardedNode):
@@ -77,17 +85,18 @@ class HardwareNode(GuardedNode):
             ),
         )
         self._publishers = [self.publisher(topic) for topic, _ in self._sensors]
-        self._position = self._commanded = np.zeros(len(JOINT_NAMES))
+        self._position = np.zeros(len(JOINT_NAMES))
+        self._trajectory: FollowedTrajectory | None = None
         height = robot.settings.stretched_leg_length_m
         self._hardware.place(np.array([0.0, 0.0, height]), self._position)
         for _ in range(_SETTLING_TICKS):
-            self._tick()
+            self._drive()
         self._standing = self._hardware.save()
         commands = topics.HARDWARE_COMMANDS
         self.create_subscription(
             message_type(commands),
             commands.name,
-            self._on_commands,
+            self._on_trajectory,
             qos_profile(commands),
         )
         self.create_service(Trigger, f"{NAME}/reset", self._on_reset)
@@ -95,23 +104,38 @@ class HardwareNode(GuardedNode):
         if self._lockstep:
             self._timer = self.create_timer(_IDLE_S, self._publish)
         else:
-            self.create_timer(CONTROL_PERIOD_S / settings.realtime_factor, self._tick)
+            self._period_ns = round(_TICK_NS / settings.realtime_factor)
+            self._due_ns = time.monotonic_ns()
+            self.create_timer(self._period_ns * 1e-9, self._keep_time)
 
     def close(self) -> None:
         """End the plant."""
         self._hardware.close()
 
+    def _keep_time(self) -> None:
+        """Do the control ticks that are due; a longer stall is lost to the clock."""
+        now_ns = time.monotonic_ns()
+        self._due_ns = max(self._due_ns, now_ns - _MADE_UP_TICKS * self._period_ns)
+        while self._due_ns <= now_ns:
+            self._due_ns += self._period_ns
+            self._tick()
+
     def _tick(self) -> None:
-        """Drive the joints to where they are to be, and publish what sensors read."""
-        q, dq = self._position, (self._commanded - self._position) / CONTROL_PERIOD_S
-        self._position = self._commanded
-        self._reading = self._hardware.exchange(q, dq)
+        self._drive()
         self._publish()
 
-    def _publish(self) -> None:
-        """Publish the newest reading, under a new stamp."""
-        reading = self._reading
+    def _drive(self) -> None:
+        """Drive the joints to where they are to be, and read the sensors."""
         self._ticks += 1
+        q, to = self._position, self._position
+        if self._trajectory is not None:
+            to = self._trajectory.at(self._ticks * _TICK_NS)
+        self._position = to
+        self._reading = self._hardware.exchange(q, (to - q) / CONTROL_PERIOD_S)
+
+    def _publish(self) -> None:
+        """Publish the newest reading."""
+        reading = self._reading
         left, right = reading.soles
         imu = np.concatenate([reading.orientation, reading.acceleration])
         for publisher, (_, template), values in zip(
@@ -122,22 +146,24 @@ class HardwareNode(GuardedNode):
         ):
             publisher.publish(template.fill(values, self._ticks))
 
-    def _on_commands(self, message: Float64MultiArray) -> None:
-        commands: Array = np.array(message.data)
-        if commands.shape != self._position.shape or not np.isfinite(commands).all():
-            error = RefusedMessageError(f"not {len(JOINT_NAMES)} finite positions")
+    def _on_trajectory(self, message: JointTrajectory) -> None:
+        try:
+            trajectory = FollowedTrajectory(message)
+        except RefusedMessageError as error:
             self.refuse(topics.HARDWARE_COMMANDS, "refused", error)
             return
-        self._commanded = commands
+        self._trajectory = trajectory
         if self._lockstep:
             self._timer.reset()
-            self._tick()
+            trajectory.begin(self._ticks * _TICK_NS)
+            for _ in range(TICKS_PER_LEARNING_TICK):
+                self._tick()
 
     def _on_reset(
         self, _: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
         self._hardware.load(self._standing)
-        self._position = self._commanded = np.zeros(len(JOINT_NAMES))
+        self._position, self._trajectory = np.zeros(len(JOINT_NAMES)), None
         self._tick()
         response.success = True
         return response

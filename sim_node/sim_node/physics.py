@@ -57,6 +57,12 @@ class Physics(Protocol):
 
     # -- motion --------------------------------------------------------------------
 
+    def plan(self, positions: Array) -> None:
+        """Take note of where the joints will be asked to be: (ticks, 12) [rad].
+
+        Only a plant that keeps its own time needs to know.
+        """
+
     def place(self, waist: Array, q: Array) -> None:
         """Put the robot at rest, upright: waist (3,) [m], joints (12,) [rad]."""
 

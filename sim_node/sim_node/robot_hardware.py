@@ -4,29 +4,42 @@ Nobody can put a real robot back on its feet but a person: a walk begins when so
 has called `/robot_hardware/begin`, holding it. The joints then go to the stance slowly,
 and the robot must stand there by itself.
 
+The robot keeps the time: control ticks are counted by the stamps of its readings. It
+is sent each segment with its look-ahead, stamped with the reading that the segment
+answers, and walks on along the look-ahead until the next one comes.
+
 What failures do:
     the sensors are silent for longer than the time-out, or read what is no number; the
-        emergency stop is pressed: the walk ends, and nothing is commanded any more. A
-        position controller holds where it was told to be last; what the motors do at an
-        emergency stop, and without commands, is the robot's own matter.
+        emergency stop is pressed; a segment comes more than a learning tick after the
+        reading that it answers: the walk ends, and the joints are asked to stay where
+        they are. What the motors do at an emergency stop, and without commands, is the
+        robot's own matter.
     the robot does not stand when the walk is to begin: no walk.
 """
 
 from __future__ import annotations
 
 import threading
+from collections import deque
 from functools import partial
 from typing import Any
 
 import numpy as np
 import rclpy
+from builtin_interfaces.msg import Duration, Time
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.task import Future
-from std_msgs.msg import Bool, Float64MultiArray
+from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from biped_common.timing import CONTROL_PERIOD_S, CONTROL_PERIOD_US, microseconds
+from biped_common.timing import (
+    CONTROL_PERIOD_US,
+    TICKS_PER_LEARNING_TICK,
+    microseconds,
+)
+from biped_description.joints import JOINT_NAMES
 from biped_description.multilink_zmp import GRAVITY_M_S2
 from biped_description.robot import Robot
 from biped_ros.messages import message_type
@@ -46,10 +59,14 @@ _FIRST_S = 1.0
 # From where the joints are to the stance, and standing there.
 _TO_STANCE_TICKS = microseconds(2.0) // CONTROL_PERIOD_US
 _STANDING_TICKS = microseconds(0.5) // CONTROL_PERIOD_US
+_LOOK_AHEAD_TICKS = 50
 # What standing is: each sole's share of the weight, and how far a joint may be off.
 _SHARE = 0.2
 _OFF_RAD = 0.05
 _STANDING = 0
+_KEPT_READINGS = 500
+_TICK_NS = CONTROL_PERIOD_US * 1000
+_S_NS = 10**9
 
 
 class RobotHardware(Hardware):
@@ -72,6 +89,15 @@ class RobotHardware(Hardware):
         self._walked = False
         """The robot has been driven; before, it is taken to stand as it is asked to."""
         self._stop = False
+        self._readings: deque[tuple[int, SensorReading]] = deque(maxlen=_KEPT_READINGS)
+        """Stamp [ns] and values, of all ticks that are still to be walked."""
+        self._origin_ns: int | None = None
+        """Stamp that ticks are counted from; None: that of the next segment."""
+        self._tick = 0
+        """Control ticks walked since then."""
+        self._sent: tuple[int, Array] = 0, np.empty((0, 0))
+        """What was sent last: the tick that it begins at, and (ticks, 12) positions."""
+        self._late = False
         self._context: Any = None
 
     # -- hardware ------------------------------------------------------------------
@@ -86,15 +112,46 @@ class RobotHardware(Hardware):
         del waist
         self._stance = q
 
+    def plan(self, positions: Array) -> None:
+        """Send the joints on their way: (ticks, 12) positions, tick by tick [rad].
+
+        The first way since a walk began starts now; the robot has stood till then.
+        """
+        with self._changed:
+            if self._origin_ns is None:
+                self._origin_ns, self._tick = self._intake.stamp_ns, 0
+            ahead = self._tick_of(self._intake.stamp_ns) - self._tick
+            self._late = ahead > TICKS_PER_LEARNING_TICK
+        if not (self._late or self._stop):
+            self._sent = self._tick, positions
+            self._send(*self._sent)
+
     def exchange(self, q: Array, dq: Array) -> SensorReading:
-        """Command the joints; wait for the next readings.
+        """Wait for the readings after the next control tick of what was planned.
 
         Raises:
-            PlantStoppedError: they do not come, or the emergency stop is pressed.
+            PlantStoppedError: they do not come, the plan came late, or the emergency
+                stop is pressed.
         """
+        del dq
         if not self._walked:
             return self._taken_to_stand(q)
-        return self._command(q + CONTROL_PERIOD_S * dq)
+        self._tick += 1
+        cause = EndCause.LATE if self._late else None
+        with self._changed:
+            self._changed.wait_for(
+                lambda: self._stop or self._arrived(), self._timeout_s
+            )
+            if self._stop:
+                cause = EndCause.EMERGENCY_STOP
+            elif cause is None and not self._arrived():
+                cause = EndCause.SENSORS_SILENT
+            elif cause is None and not self._readings[0][1].usable:
+                cause = EndCause.SENSORS_INVALID
+            if cause is None:
+                return self._readings[0][1]
+        self._hold()
+        raise PlantStoppedError(cause)
 
     def push(self, force_n: Vector) -> None:
         """Do nothing: a real robot is pushed by hand."""
@@ -121,15 +178,27 @@ class RobotHardware(Hardware):
             self._begun = False
         self._walked = True
         # From where the joints are now, not where they were when last heard of.
-        reading = self._wait(self._intake.complete, _FIRST_S)
+        seen = self._intake.complete
+        with self._changed:
+            if not self._changed.wait_for(
+                lambda: self._stop or self._intake.complete > seen, _FIRST_S
+            ):
+                raise PlantStoppedError(EndCause.SENSORS_SILENT)
+            reading = self._intake.newest
+        if reading is None or not reading.usable:
+            raise PlantStoppedError(EndCause.SENSORS_INVALID)
         start = reading.joints[: len(self._stance)]
-        for tick in range(1, _TO_STANCE_TICKS + 1):
-            s = tick / _TO_STANCE_TICKS
-            # The path of least jerk: at rest at both ends.
-            share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
-            self._command(start + share * (self._stance - start))
-        for _ in range(_STANDING_TICKS):
-            reading = self._command(self._stance)
+        # The path of least jerk: at rest at both ends.
+        s = np.arange(1, _TO_STANCE_TICKS + 1)[:, None] / _TO_STANCE_TICKS
+        share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+        stands = np.tile(self._stance, (_STANDING_TICKS + _LOOK_AHEAD_TICKS, 1))
+        way = np.vstack([start + share * (self._stance - start), stands])
+        self._origin_ns = None
+        for tick in range(0, len(way) - _LOOK_AHEAD_TICKS, TICKS_PER_LEARNING_TICK):
+            self.plan(way[tick : tick + TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS])
+            for _ in range(TICKS_PER_LEARNING_TICK):
+                reading = self.exchange(self._stance, np.zeros(0))
+        self._origin_ns = None
         off_rad = abs(reading.joints[: len(self._stance)] - self._stance).max()
         if not (
             off_rad < _OFF_RAD and reading.soles[:, 0].min() > _SHARE * self._weight_n
@@ -150,29 +219,43 @@ class RobotHardware(Hardware):
 
     # -- commands and readings -----------------------------------------------------
 
-    def _command(self, positions: Array) -> SensorReading:
-        if not np.isfinite(positions).all():
-            raise PlantStoppedError(EndCause.PHYSICS_NAN)
-        if self._stop:
-            raise PlantStoppedError(EndCause.EMERGENCY_STOP)
-        seen = self._intake.complete
-        self._commands.publish(Float64MultiArray(data=positions.tolist()))
-        return self._wait(seen, self._timeout_s)
-
-    def _wait(self, seen: int, timeout_s: float) -> SensorReading:
-        """Return the newest reading, once there are more than were seen."""
-        with self._changed:
-            self._changed.wait_for(
-                lambda: self._stop or self._intake.complete > seen, timeout_s
+    def _send(self, tick: int, positions: Array) -> None:
+        """Have the joints follow (ticks, 12) positions from after a tick on."""
+        stamp_ns = (self._origin_ns or 0) + tick * _TICK_NS
+        message = JointTrajectory(joint_names=list(JOINT_NAMES))
+        message.header.stamp = Time(sec=stamp_ns // _S_NS, nanosec=stamp_ns % _S_NS)
+        message.points = [
+            JointTrajectoryPoint(
+                positions=row,
+                time_from_start=Duration(
+                    sec=i * _TICK_NS // _S_NS, nanosec=i * _TICK_NS % _S_NS
+                ),
             )
-            reading = self._intake.newest
-            if self._stop:
-                raise PlantStoppedError(EndCause.EMERGENCY_STOP)
-            if reading is None or self._intake.complete <= seen:
-                raise PlantStoppedError(EndCause.SENSORS_SILENT)
-        if not reading.usable:
-            raise PlantStoppedError(EndCause.SENSORS_INVALID)
-        return reading
+            for i, row in enumerate(positions.tolist(), start=1)
+        ]
+        self._commands.publish(message)
+
+    def _hold(self) -> None:
+        """Have the joints stay where they are asked to be now."""
+        begun, positions = self._sent
+        if len(positions) > 0:
+            now = self._tick_of(self._intake.stamp_ns)
+            row = min(max(now - begun - 1, 0), len(positions) - 1)
+            self._send(now, positions[[row]])
+
+    def _tick_of(self, stamp_ns: int) -> int:
+        """Return the control tick, since a walk's first, that a stamp belongs to."""
+        return round((stamp_ns - (self._origin_ns or 0)) / _TICK_NS)
+
+    def _arrived(self) -> bool:
+        """Return whether the readings after the present tick have come, or later ones.
+
+        Those of one that was lost are taken from the next.
+        """
+        readings = self._readings
+        while readings and self._tick_of(readings[0][0]) < self._tick:
+            readings.popleft()
+        return bool(readings)
 
     def _taken_to_stand(self, q: Array) -> SensorReading:
         half = [0.5 * self._weight_n, 0.0, 0.0]
@@ -206,7 +289,7 @@ class RobotHardware(Hardware):
             node.create_subscription(
                 message_type(topic),
                 topic.name,
-                partial(self._arrived, handle),
+                partial(self._take, handle),
                 qos_profile(topic),
             )
         commands = topics.HARDWARE_COMMANDS
@@ -226,13 +309,18 @@ class RobotHardware(Hardware):
             executor.spin_until_future_complete(never, timeout_sec=_TURN_S)
         executor.shutdown()
 
-    def _arrived(self, handle: Any, message: Any) -> None:
+    def _take(self, handle: Any, message: Any) -> None:
         with self._changed:
+            seen = self._intake.complete
             handle(message)
-            self._changed.notify_all()
+            if self._intake.complete > seen and self._intake.newest is not None:
+                self._readings.append((self._intake.stamp_ns, self._intake.newest))
+                self._changed.notify_all()
 
     def _on_emergency_stop(self, message: Bool) -> None:
-        self._stop = message.data
+        with self._changed:
+            self._stop = message.data
+            self._changed.notify_all()
 
     def _on_begin(
         self, _: Trigger.Request, response: Trigger.Response
@@ -242,6 +330,9 @@ class RobotHardware(Hardware):
                 response.message = "the emergency stop is pressed"
             elif self._intake.newest is None:
                 response.message = "not all sensors have been heard yet"
+            elif self._commands.get_subscription_count() == 0:
+                topic = topics.HARDWARE_COMMANDS.name
+                response.message = f"nobody listens to {topic}"
             else:
                 self._begun = response.success = True
                 response.message = "the joints go to the stance; hold the robot"

@@ -27,8 +27,11 @@ class Hardware(Protocol):
     def place(self, waist: Array, q: Array) -> None:
         """Have the robot stand at rest, upright: waist (3,) [m], joints (12,) [rad]."""
 
+    def plan(self, positions: Array) -> None:
+        """Take note of where the joints will be asked to be; see `Physics.plan`."""
+
     def exchange(self, q: Array, dq: Array) -> SensorReading:
-        """Drive the joints for one control tick; return the newest readings."""
+        """Drive the joints for one control tick; return the readings after it."""
 
     def push(self, force_n: Vector) -> None:
         """Push the torso, where that can be done; see `Physics.push`."""
@@ -74,6 +77,10 @@ class SensedWorld(Physics):
         self.hardware.set_mass_factors(factors)
 
     # -- motion --------------------------------------------------------------------
+
+    def plan(self, positions: Array) -> None:
+        """Take note of where the joints will be asked to be."""
+        self.hardware.plan(positions)
 
     def place(self, waist: Array, q: Array) -> None:
         """Have the robot stand; what is estimated begins there."""

@@ -27,6 +27,8 @@ class SensorIntake:
         self.newest: SensorReading | None = None
         self.complete = 0
         """Readings that were complete."""
+        self.stamp_ns = 0
+        """Of the newest one."""
         self._stamps: list[tuple[int, int] | None] = [None] * 4
         self._joints = np.empty(3 * _N_JOINTS)
         self._imu = np.empty(4), np.empty(3)
@@ -61,6 +63,7 @@ class SensorIntake:
         self._stamps[topic] = stamp.sec, stamp.nanosec
         if len(set(self._stamps)) == 1:
             self.newest = SensorReading(self._joints, *self._imu, self._soles)
+            self.stamp_ns = stamp.sec * 10**9 + stamp.nanosec
             self.complete += 1
 
 

@@ -242,6 +242,15 @@ class SimNodeSettings(Settings):
         upper=10,
     )
 
+    def check_together(self) -> None:
+        """Refuse a pace of the simulation's own where a robot keeps the time."""
+        if self.sim.engine == ROBOT and self.pace != "lockstep":
+            raise SettingsError(
+                "pace",
+                self.pace,
+                f"must be lockstep with sim.engine = {ROBOT}, which keeps its own time",
+            )
+
 
 @dataclass(frozen=True)
 class HardwareNodeSettings(Settings):
@@ -253,7 +262,7 @@ class HardwareNodeSettings(Settings):
     pace: str = setting(
         "realtime",
         "",
-        "realtime: 500 Hz, commands or not; lockstep: a tick for every command",
+        "realtime: 500 Hz, whatever comes; lockstep: 20 ms for every trajectory",
         choices=("realtime", "lockstep"),
     )
     realtime_factor: float = setting(

@@ -78,6 +78,9 @@ class SimulatedHardware:
         self._velocity = np.zeros(3)
         self._late.clear()
 
+    def plan(self, positions: Array) -> None:
+        """Do nothing: time goes on with each exchange."""
+
     def exchange(self, q: Array, dq: Array) -> SensorReading:
         """Drive the joints for one control tick; return the readings that are there.
 

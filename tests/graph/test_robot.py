@@ -29,7 +29,8 @@ from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
 
 TIMEOUT_S = 120.0
-LOCKSTEP = ("--ros-args", "-p", "pace:=lockstep")
+LOCKSTEP = ("pace:=lockstep",)
+IN_ITS_OWN_TIME = ("pace:=realtime", "realtime_factor:=0.25")
 SENSED = "sim.observations=sensors"
 
 
@@ -79,10 +80,12 @@ def person(domain):
 
 
 @pytest.fixture
-def hardware(domain):
-    """Play the robot: time goes on with every command."""
+def hardware(domain, request):
+    """Play the robot: in lockstep, time goes on with every command."""
+    settings = getattr(request, "param", LOCKSTEP)
+    arguments = [word for each in settings for word in ("-p", each)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "sim_node.hardware_node", *LOCKSTEP],
+        [sys.executable, "-m", "sim_node.hardware_node", "--ros-args", *arguments],
         env=os.environ | {"ROS_DOMAIN_ID": str(domain)},
     )
     yield process
@@ -155,6 +158,26 @@ def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
 
     hardware.kill()
     assert biped.execute(next(static)).end_cause is EndCause.SENSORS_SILENT
+
+
+@pytest.mark.parametrize("hardware", [IN_ITS_OWN_TIME], indirect=True)
+def test_a_robot_that_keeps_its_own_time_is_followed_tick_by_tick(
+    new_biped, hardware, person
+):
+    biped = new_biped(SHIPPED)
+    assert begin(biped, person, 1).end_cause is None
+    # Segments as nodes send them, with look-ahead.
+    reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings(), 50)
+    for _ in range(30):
+        observation = biped.execute(reference.segment(np.zeros(2)))
+        time.sleep(0.02)  # the robot walks on
+    assert (observation.control_tick, observation.end_cause) == (300, None)
+    assert observation.worst_zmp_error_m < 0.03
+    assert biped.world.waist().position[2] == pytest.approx(0.475, abs=0.002)
+
+    time.sleep(0.5)  # for longer than a segment may take
+    observation = biped.execute(reference.segment(np.zeros(2)))
+    assert observation.end_cause is EndCause.LATE
 
 
 def test_a_robot_that_does_not_stand_does_not_walk(new_biped, hardware, person):
