@@ -193,7 +193,7 @@ class RobotHardware(Hardware):
         share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
         stands = np.tile(self._stance, (_STANDING_TICKS + _LOOK_AHEAD_TICKS, 1))
         way = np.vstack([start + share * (self._stance - start), stands])
-        self._origin_ns = None
+        self._origin_ns, self._sent = None, (0, way[:0])
         for tick in range(0, len(way) - _LOOK_AHEAD_TICKS, TICKS_PER_LEARNING_TICK):
             self.plan(way[tick : tick + TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS])
             for _ in range(TICKS_PER_LEARNING_TICK):

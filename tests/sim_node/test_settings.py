@@ -93,3 +93,11 @@ def test_settings_of_the_node_out_of_range_are_refused(name, value):
 def test_a_setting_made_in_code_has_the_right_type(value):
     with pytest.raises(SettingsError, match=r"^friction = .*: must be a number"):
         DisturbanceSettings(friction=value)
+
+
+def test_a_robot_that_keeps_its_own_time_takes_no_other_pace():
+    sim = SimSettings(engine="robot", observations="sensors")
+    assert SimNodeSettings(sim=sim).pace == "lockstep"
+    message = r"^pace = 'realtime': must be lockstep with sim.engine = robot, "
+    with pytest.raises(SettingsError, match=message):
+        SimNodeSettings(sim=sim, pace="realtime")
