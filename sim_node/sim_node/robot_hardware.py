@@ -177,28 +177,7 @@ class RobotHardware(Hardware):
             self._changed.wait_for(lambda: self._begun)
             self._begun = False
         self._walked = True
-        # From where the joints are now, not where they were when last heard of.
-        seen = self._intake.complete
-        with self._changed:
-            if not self._changed.wait_for(
-                lambda: self._stop or self._intake.complete > seen, _FIRST_S
-            ):
-                raise PlantStoppedError(EndCause.SENSORS_SILENT)
-            reading = self._intake.newest
-        if reading is None or not reading.usable:
-            raise PlantStoppedError(EndCause.SENSORS_INVALID)
-        start = reading.joints[: len(self._stance)]
-        # The path of least jerk: at rest at both ends.
-        s = np.arange(1, _TO_STANCE_TICKS + 1)[:, None] / _TO_STANCE_TICKS
-        share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
-        stands = np.tile(self._stance, (_STANDING_TICKS + _LOOK_AHEAD_TICKS, 1))
-        way = np.vstack([start + share * (self._stance - start), stands])
-        self._origin_ns, self._sent = None, (0, way[:0])
-        for tick in range(0, len(way) - _LOOK_AHEAD_TICKS, TICKS_PER_LEARNING_TICK):
-            self.plan(way[tick : tick + TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS])
-            for _ in range(TICKS_PER_LEARNING_TICK):
-                reading = self.exchange(self._stance, np.zeros(0))
-        self._origin_ns = None
+        reading = self._go_to_stance(self._newest().joints[: len(self._stance)])
         off_rad = abs(reading.joints[: len(self._stance)] - self._stance).max()
         if not (
             off_rad < _OFF_RAD and reading.soles[:, 0].min() > _SHARE * self._weight_n
@@ -218,6 +197,37 @@ class RobotHardware(Hardware):
             self._context = None
 
     # -- commands and readings -----------------------------------------------------
+
+    def _newest(self) -> SensorReading:
+        """Return what is read from now on, not what was heard of last.
+
+        Raises:
+            PlantStoppedError: the sensors are silent, or read what is no number.
+        """
+        with self._changed:
+            seen = self._intake.complete
+            self._changed.wait_for(lambda: self._intake.complete > seen, _FIRST_S)
+            reading = self._intake.newest
+            if reading is None or self._intake.complete == seen:
+                raise PlantStoppedError(EndCause.SENSORS_SILENT)
+        if not reading.usable:
+            raise PlantStoppedError(EndCause.SENSORS_INVALID)
+        return reading
+
+    def _go_to_stance(self, start: Array) -> SensorReading:
+        """Lead the (12,) joints to the stance, and stay; return the last readings."""
+        # The path of least jerk: at rest at both ends.
+        s = np.arange(1, _TO_STANCE_TICKS + 1)[:, None] / _TO_STANCE_TICKS
+        share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+        stands = np.tile(self._stance, (_STANDING_TICKS + _LOOK_AHEAD_TICKS, 1))
+        way = np.vstack([start + share * (self._stance - start), stands])
+        self._origin_ns, self._sent = None, (0, way[:0])
+        for tick in range(0, len(way) - _LOOK_AHEAD_TICKS, TICKS_PER_LEARNING_TICK):
+            self.plan(way[tick : tick + TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS])
+            for _ in range(TICKS_PER_LEARNING_TICK):
+                reading = self.exchange(self._stance, np.zeros(0))
+        self._origin_ns = None
+        return reading
 
     def _send(self, tick: int, positions: Array) -> None:
         """Have the joints follow (ticks, 12) positions from after a tick on."""
