@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from biped_common.timing import nanoseconds
 from biped_description.joints import JOINT_NAMES
 from msgs_json.wire import RefusedMessageError
 from sim_node.physics import Array
@@ -39,13 +40,13 @@ class FollowedTrajectory:
         columns = [place[name] for name in JOINT_NAMES]
         self._positions: Array = np.array(rows, dtype=np.float64)[:, columns]
         self._times_ns = np.array(
-            [_ns(each.time_from_start) for each in message.points]
+            [nanoseconds(each.time_from_start) for each in message.points]
         )
         if not np.isfinite(self._positions).all():
             raise RefusedMessageError("a position that is not finite")
         if (np.diff(self._times_ns) <= 0).any():
             raise RefusedMessageError("points that do not follow one another")
-        self._from_ns = _ns(message.header.stamp)
+        self._from_ns = nanoseconds(message.header.stamp)
 
     def begin(self, now_ns: int) -> None:
         """Let it begin now, whatever its stamp says."""
@@ -64,8 +65,3 @@ class FollowedTrajectory:
             start, end = self._positions[i - 1 : i + 1]
         position: Array = start + share * (end - start)
         return position
-
-
-def _ns(time: Any) -> int:
-    """Return a builtin_interfaces Time or Duration in nanoseconds."""
-    return int(time.sec) * 10**9 + int(time.nanosec)

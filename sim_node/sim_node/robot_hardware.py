@@ -26,10 +26,11 @@ from typing import Any
 
 import numpy as np
 import rclpy
-from builtin_interfaces.msg import Duration, Time
+from rclpy.duration import Duration
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.task import Future
+from rclpy.time import Time
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -66,7 +67,6 @@ _OFF_RAD = 0.05
 _STANDING = 0
 _KEPT_READINGS = 500
 _TICK_NS = CONTROL_PERIOD_US * 1000
-_S_NS = 10**9
 
 
 class RobotHardware(Hardware):
@@ -233,13 +233,11 @@ class RobotHardware(Hardware):
         """Have the joints follow (ticks, 12) positions from after a tick on."""
         stamp_ns = (self._origin_ns or 0) + tick * _TICK_NS
         message = JointTrajectory(joint_names=list(JOINT_NAMES))
-        message.header.stamp = Time(sec=stamp_ns // _S_NS, nanosec=stamp_ns % _S_NS)
+        message.header.stamp = Time(nanoseconds=stamp_ns).to_msg()
         message.points = [
             JointTrajectoryPoint(
                 positions=row,
-                time_from_start=Duration(
-                    sec=i * _TICK_NS // _S_NS, nanosec=i * _TICK_NS % _S_NS
-                ),
+                time_from_start=Duration(nanoseconds=i * _TICK_NS).to_msg(),
             )
             for i, row in enumerate(positions.tolist(), start=1)
         ]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from biped_common.timing import nanoseconds
 from biped_description.joints import JOINT_NAMES
 from sim_node.physics import Array
 from sim_node.sensors import SensorReading
@@ -29,7 +30,7 @@ class SensorIntake:
         """Readings that were complete."""
         self.stamp_ns = 0
         """Of the newest one."""
-        self._stamps: list[tuple[int, int] | None] = [None] * 4
+        self._stamps: list[int | None] = [None] * 4
         self._joints = np.empty(3 * _N_JOINTS)
         self._imu = np.empty(4), np.empty(3)
         self._soles = np.empty((2, 3))
@@ -59,11 +60,10 @@ class SensorIntake:
         self._arrived((_LEFT, _RIGHT)[side], message)
 
     def _arrived(self, topic: int, message: Any) -> None:
-        stamp = message.header.stamp
-        self._stamps[topic] = stamp.sec, stamp.nanosec
+        self._stamps[topic] = stamp_ns = nanoseconds(message.header.stamp)
         if len(set(self._stamps)) == 1:
             self.newest = SensorReading(self._joints, *self._imu, self._soles)
-            self.stamp_ns = stamp.sec * 10**9 + stamp.nanosec
+            self.stamp_ns = stamp_ns
             self.complete += 1
 
 

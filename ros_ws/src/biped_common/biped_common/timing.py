@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 CONTROL_PERIOD_US = 2_000
 TICKS_PER_LEARNING_TICK = 10
 CONTROL_PERIOD_S = CONTROL_PERIOD_US * 1e-6
@@ -23,3 +25,8 @@ def control_ticks(duration_s: float) -> int:
 def microseconds(duration_s: float) -> int:
     """Return a duration in whole microseconds, in which events are compared."""
     return round(duration_s * 1e6)
+
+
+def nanoseconds(time: Any) -> int:
+    """Return a builtin_interfaces Time or Duration in nanoseconds."""
+    return int(time.sec) * 10**9 + int(time.nanosec)
