@@ -244,12 +244,15 @@ class RobotHardware(Hardware):
         self._commands.publish(message)
 
     def _hold(self) -> None:
-        """Have the joints stay where they are asked to be now."""
+        """Have the joints stay where they are asked to be now.
+
+        For a while: a controller refuses a trajectory that has ended when it comes.
+        """
         begun, positions = self._sent
         if len(positions) > 0:
             now = self._tick_of(self._intake.stamp_ns)
             row = min(max(now - begun - 1, 0), len(positions) - 1)
-            self._send(now, positions[[row]])
+            self._send(now, positions[[row] * _LOOK_AHEAD_TICKS])
 
     def _tick_of(self, stamp_ns: int) -> int:
         """Return the control tick, since a walk's first, that a stamp belongs to."""
