@@ -17,6 +17,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 from tests.conftest import COMMAND
 from tests.robots import SHIPPED
+from trajectory_msgs.msg import JointTrajectory
 
 from biped_bringup.run_settings import load_settings
 from biped_bringup.training import TrainingRun
@@ -45,6 +46,12 @@ class Person:
         self.executor.add_node(self.node)
         name = topics.EMERGENCY_STOP.name
         self.button = self.node.create_publisher(Bool, name, 10)
+        self.asked = []
+        """Of the joints, newest last."""
+        name = topics.HARDWARE_COMMANDS.name
+        self.node.create_subscription(
+            JointTrajectory, commands, self.asked.append, 1000
+        )
 
     def call(self, service):
         client = self.node.create_client(Trigger, service)
@@ -59,6 +66,16 @@ class Person:
         while not (answer := self.call("/robot_hardware/begin")).success:
             assert time.monotonic() < end, answer.message
             time.sleep(0.1)
+
+    def last_asked(self):
+        """Return (points, 12) positions, once nothing comes any more."""
+        heard = -1
+        while heard < len(self.asked):
+            heard = len(self.asked)
+            end = time.monotonic() + 0.5
+            while time.monotonic() < end:
+                self.executor.spin_once(0.05)
+        return np.array([point.positions for point in self.asked[-1].points])
 
     def press(self, pressed):
         end = time.monotonic() + TIMEOUT_S
@@ -144,6 +161,8 @@ def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
     while biped.end_cause is None:
         observation = biped.execute(next(static))
     assert observation.end_cause is EndCause.EMERGENCY_STOP
+    asked = person.last_asked()
+    assert (len(asked), np.ptp(asked, axis=0).max()) == (50, 0.0)  # to stay
     refused = person.call("/robot_hardware/begin")
     assert (refused.success, refused.message) == (
         False,
