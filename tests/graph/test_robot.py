@@ -49,9 +49,7 @@ class Person:
         self.asked = []
         """Of the joints, newest last."""
         name = topics.HARDWARE_COMMANDS.name
-        self.node.create_subscription(
-            JointTrajectory, commands, self.asked.append, 1000
-        )
+        self.node.create_subscription(JointTrajectory, name, self.asked.append, 1000)
 
     def call(self, service):
         client = self.node.create_client(Trigger, service)
