@@ -1,12 +1,13 @@
 """Learned walks of a robot that is known by its sensors only.
 
-    python -m biped_lab.sensed_walks --seeds 10
+    python -m biped_lab.sensed_walks --seeds 10 --walks 5
 
 Learns the walk from the truth, and once more from sensors with noise and one tick of
-delay, on the same seeds; then walks what was learned, frozen, with ever worse sensors
-once per seed. Prints a table in Markdown. Of the walks whose learning came to its end:
-how many were completed; in how many of these the true ZMP stayed within the limit,
-which the robot judges by its sensors; and median and largest of its worst errors.
+delay, on the same seeds; then walks what was learned, frozen, with ever worse sensors,
+some walks per seed, each with noise of its own. Prints a table in Markdown. Of the
+walks whose learning came to its end: how many were completed; in how many of these the
+true ZMP stayed within the limit, which the robot judges by its sensors; median and
+largest of its worst errors; and how many walks of each seed were completed.
 """
 
 from __future__ import annotations
@@ -63,12 +64,17 @@ SENSES: Final = {
 
 
 def walked(
-    learned: Learned, settings: RunSettings, seed: int, changes: tuple[str, ...]
-) -> tuple[bool, float]:
-    """Walk what was learned once.
+    learned: Learned,
+    settings: RunSettings,
+    seed: int,
+    changes: tuple[str, ...],
+    walks: int = 1,
+) -> list[tuple[bool, float]]:
+    """Walk what was learned some times.
 
     Returns:
-        Whether it came to the end, and the largest norm of the true ZMP error [m].
+        Of each walk, whether it came to the end, and the largest norm of the true ZMP
+        error [m].
     """
     worst = 0.0
 
@@ -88,18 +94,24 @@ def walked(
         np.random.default_rng(robot_stream(seed)),
         look,
     )
+    outcomes = []
     with closing(walker):
-        return walker.walk(learned.walk()).completed, worst
+        for _ in range(walks):
+            worst = 0.0
+            completed = walker.walk(learned.walk()).completed
+            outcomes.append((completed, worst))
+    return outcomes
 
 
-def cell(outcomes: list[tuple[bool, float]], limit_m: float) -> str:
-    """Return how walks went, in words."""
-    peaks = [worst for completed, worst in outcomes if completed]
+def cell(outcomes: list[list[tuple[bool, float]]], limit_m: float) -> str:
+    """Return in words how the walks of each seed went."""
+    peaks = [worst for walks in outcomes for completed, worst in walks if completed]
     if not peaks:
         return "0"
     within = sum(worst < limit_m for worst in peaks)
     median_mm, most_mm = 1000 * np.median(peaks), 1000 * max(peaks)
-    return f"{len(peaks)} ({within}), {median_mm:.1f}, {most_mm:.1f} mm"
+    by_seed = " ".join(str(sum(ended for ended, _ in walks)) for walks in outcomes)
+    return f"{len(peaks)} ({within}), {median_mm:.1f}, {most_mm:.1f} mm; {by_seed}"
 
 
 def main() -> int:
@@ -110,6 +122,9 @@ def main() -> int:
     parser.add_argument("--preset", choices=PRESETS, default="directed")
     parser.add_argument("--seeds", type=positive, default=10, metavar="N")
     parser.add_argument("--first", type=positive, default=8101, metavar="SEED")
+    parser.add_argument(
+        "--walks", type=positive, default=1, metavar="N", help="per seed (default 1)"
+    )
     options = parser.parse_args()
     seeds = range(options.first, options.first + options.seeds)
     columns: dict[str, list[str]] = {}
@@ -121,8 +136,11 @@ def main() -> int:
         limit_m = settings.sim.limits.zmp_error_m
         truth = load_settings(options.preset)
         columns[f"learned from the {name} ({len(learned)} of {len(seeds)})"] = [
-            cell([walked(w, truth, n, worse) for n, w in learned.items()], limit_m)
-            for worse in SENSES.values()
+            cell(
+                [walked(w, truth, n, c, options.walks) for n, w in learned.items()],
+                limit_m,
+            )
+            for c in SENSES.values()
         ]
     rows = zip(SENSES, *columns.values(), strict=True)
     print(Table(("walked by", *columns), tuple(rows)).markdown(), end="")

@@ -4,12 +4,14 @@
 
 Learns with the same seeds on each engine, on both in turns of chance, and on both with
 friction drawn as well; then walks what was learned, frozen, on each plant. Prints a
-table in Markdown: episodes to the learned walk, and how many walks were completed.
+table in Markdown: episodes to the learned walk (inf: not learned), and how many walks
+were completed.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import statistics
 import sys
 from collections.abc import Sequence
@@ -114,25 +116,29 @@ def main() -> int:
     options = parser.parse_args()
     settings = load_settings(options.preset)
     seeds = range(options.first, options.first + options.seeds)
-    columns = ["learned on", "learned", "episodes, median (most)"]
+    columns = ["learned on", "learned", "episodes, median", "by seed"]
     columns += [f"walks on {plant}" for plant in PLANTS]
     print(markdown.head(columns))
     for name, plants in LEARNED_ON.items():
         found = [learn(settings, seed, plants) for seed in seeds]
-        learned = [session for session in found if session is not None]
-        print(_row(name, len(seeds), learned, settings), flush=True)
+        print(_row(name, found, settings), flush=True)
     return 0
 
 
 def _row(
-    name: str, seeds: int, learned: Sequence[LearningSession], settings: RunSettings
+    name: str,
+    found: Sequence[LearningSession | None],
+    settings: RunSettings,
 ) -> str:
-    cells = [name, f"{len(learned)} of {seeds}"]
-    episodes = [session.episodes for session in learned]
-    if episodes:
-        cells.append(f"{statistics.median(episodes):g} ({max(episodes)})")
-    else:
-        cells.append("none")
+    learned = [session for session in found if session is not None]
+    # Those that did not learn took longer than any that did.
+    episodes = [session.episodes if session else math.inf for session in found]
+    cells = [
+        name,
+        f"{len(learned)} of {len(found)}",
+        f"{statistics.median(episodes):g}",
+        ", ".join(f"{n:g}" for n in episodes),
+    ]
     return markdown.row(
         cells
         + [
