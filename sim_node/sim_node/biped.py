@@ -335,6 +335,7 @@ class SimulatedBiped:
         if failed or self._watch.end_cause is None:
             self._watch.end_cause = cause
         self._watch.clock_ticks += 1
+        self.world.stop()
 
     @property
     def ticks_ahead(self) -> int:

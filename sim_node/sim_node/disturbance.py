@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from biped_common.timing import CONTROL_PERIOD_US, microseconds
+from biped_common.timing import control_ticks
 from sim_node.settings import DisturbanceSettings
 
 
@@ -32,8 +32,8 @@ def draw_disturbance(
     """
     direction = rng.uniform(0.0, 2.0 * math.pi)
     errors = rng.standard_normal(n_links)
-    start = microseconds(settings.push_time_s) // CONTROL_PERIOD_US
-    ticks = max(1, microseconds(settings.push_duration_s) // CONTROL_PERIOD_US)
+    start = control_ticks(settings.push_time_s)
+    ticks = max(1, control_ticks(settings.push_duration_s))
     force = settings.push_force_n
     # A link can be light, but never without mass.
     factors = np.maximum(1.0 + settings.mass_error * errors, 0.1)

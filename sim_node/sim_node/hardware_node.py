@@ -14,13 +14,14 @@ import time
 from typing import Any
 
 import numpy as np
+from rclpy.time import Time
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory
 
 from biped_common.seeds import robot_stream
 from biped_common.timing import (
+    CONTROL_PERIOD_NS,
     CONTROL_PERIOD_S,
-    CONTROL_PERIOD_US,
     TICKS_PER_LEARNING_TICK,
 )
 from biped_description.joints import JOINT_NAMES
@@ -47,7 +48,6 @@ _SETTLING_TICKS = 150
 # In lockstep, after so long without a trajectory, sensors are heard again: time stands
 # still for the robot, but it must not seem dead.
 _IDLE_S = 0.5
-_TICK_NS = CONTROL_PERIOD_US * 1000
 _MADE_UP_TICKS = 5
 """Control ticks that a late timer makes up for."""
 
@@ -104,7 +104,7 @@ class HardwareNode(GuardedNode):
         if self._lockstep:
             self._timer = self.create_timer(_IDLE_S, self._publish)
         else:
-            self._period_ns = round(_TICK_NS / settings.realtime_factor)
+            self._period_ns = round(CONTROL_PERIOD_NS / settings.realtime_factor)
             self._due_ns = time.monotonic_ns()
             self.create_timer(self._period_ns * 1e-9, self._keep_time)
 
@@ -129,7 +129,7 @@ class HardwareNode(GuardedNode):
         self._ticks += 1
         q, to = self._position, self._position
         if self._trajectory is not None:
-            to = self._trajectory.at(self._ticks * _TICK_NS)
+            to = self._trajectory.at(self._ticks * CONTROL_PERIOD_NS)
         self._position = to
         self._reading = self._hardware.exchange(q, (to - q) / CONTROL_PERIOD_S)
 
@@ -147,15 +147,18 @@ class HardwareNode(GuardedNode):
             publisher.publish(template.fill(values, self._ticks))
 
     def _on_trajectory(self, message: JointTrajectory) -> None:
+        if self._lockstep:
+            message.header.stamp = (
+                Time().to_msg()
+            )  # time has stood still: it begins now
+        now_ns = self._ticks * CONTROL_PERIOD_NS
         try:
-            trajectory = FollowedTrajectory(message)
+            self._trajectory = FollowedTrajectory(message, now_ns, self._position)
         except RefusedMessageError as error:
             self.refuse(topics.HARDWARE_COMMANDS, "refused", error)
             return
-        self._trajectory = trajectory
         if self._lockstep:
             self._timer.reset()
-            trajectory.begin(self._ticks * _TICK_NS)
             for _ in range(TICKS_PER_LEARNING_TICK):
                 self._tick()
 

@@ -9,7 +9,7 @@ from typing import Any
 from numba import njit
 from numpy.typing import NDArray
 
-from biped_common.timing import CONTROL_PERIOD_US, microseconds
+from biped_common.timing import control_ticks
 from msgs_json.end_cause import EndCause
 from sim_node.contact import FloorContact
 from sim_node.physics import Array
@@ -97,4 +97,4 @@ def _judge(
 
 
 def _ticks(duration_s: float) -> int:
-    return max(1, microseconds(duration_s) // CONTROL_PERIOD_US)
+    return max(1, control_ticks(duration_s))

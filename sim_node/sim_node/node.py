@@ -338,6 +338,9 @@ class SimNode(GuardedNode):
     def _on_pause(
         self, request: SetBool.Request, response: SetBool.Response
     ) -> SetBool.Response:
+        if self._settings.sim.engine == ROBOT:
+            response.message = "a real robot cannot be stopped in the middle of a walk"
+            return response
         self._paused = request.data
         self._heard = time.monotonic()
         if self._loop is not None:

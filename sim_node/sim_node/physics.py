@@ -106,5 +106,11 @@ class Physics(Protocol):
     def release(self, handle: int) -> None:
         """Forget a kept state."""
 
+    def stop(self) -> None:
+        """Have the joints stay: a walk was ended by whoever guides the robot.
+
+        Only a plant that keeps its own time needs to be told.
+        """
+
     def close(self) -> None:
         """Free what the plant holds; harmless when repeated."""

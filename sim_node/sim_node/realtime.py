@@ -20,8 +20,8 @@ from queue import Empty, SimpleQueue
 import numpy as np
 
 from biped_common.timing import (
+    CONTROL_PERIOD_NS,
     CONTROL_PERIOD_S,
-    CONTROL_PERIOD_US,
     TICKS_PER_LEARNING_TICK,
 )
 from msgs_json.end_cause import EndCause
@@ -119,7 +119,7 @@ class RealtimeLoop:
 
     def set_factor(self, factor: float) -> None:
         """Walk so many simulated seconds per second from the next control tick on."""
-        self._period_ns = round(CONTROL_PERIOD_US * 1000 / factor)
+        self._period_ns = round(CONTROL_PERIOD_NS / factor)
 
     def start(self) -> None:
         """Start the thread; the robot stands until the first walk is begun."""

@@ -1,26 +1,32 @@
 """A real robot's motors and sensors, on the topics of ros2_control.
 
 Nobody can put a real robot back on its feet but a person: a walk begins when somebody
-has called `/robot_hardware/begin`, holding it. The joints then go to the stance slowly,
-and the robot must stand there by itself.
+has called `/robot_hardware/begin`, holding it, between two walks and a few seconds
+before. The joints then go to the stance slowly, and the robot must stand there by
+itself.
 
 The robot keeps the time: control ticks are counted by the stamps of its readings. It
 is sent each segment with its look-ahead, stamped with the reading that the segment
 answers, and walks on along the look-ahead until the next one comes.
 
 What failures do:
-    the sensors are silent for longer than the time-out, or read what is no number; the
-        emergency stop is pressed; a segment comes more than a learning tick after the
-        reading that it answers: the walk ends, and the joints are asked to stay where
-        they are. What the motors do at an emergency stop, and without commands, is the
-        robot's own matter.
+    the emergency stop is pressed, if only for a moment: the joints are asked to stay
+        at once, the walk ends, and whoever has asked for one has to ask again. What the
+        motors do at an emergency stop, and without commands, is the robot's own matter.
+    the sensors read what is no number; a segment comes more than a learning tick after
+        the reading that it answers; the walk is ended by whoever guides it: it ends,
+        and the joints are asked to stay.
+    the sensors are silent for longer than the time-out: the walk ends. Nobody knows any
+        more where the joints are to stay; they come to rest where the look-ahead ends.
     the robot does not stand when the walk is to begin: no walk.
 """
 
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -36,9 +42,9 @@ from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from biped_common.timing import (
-    CONTROL_PERIOD_US,
+    CONTROL_PERIOD_NS,
     TICKS_PER_LEARNING_TICK,
-    microseconds,
+    control_ticks,
 )
 from biped_description.joints import JOINT_NAMES
 from biped_description.multilink_zmp import GRAVITY_M_S2
@@ -47,7 +53,7 @@ from biped_ros.messages import message_type
 from biped_ros.qos import qos_profile
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
-from sim_node.errors import PlantStoppedError
+from sim_node.errors import PlantStoppedError, SnapshotError
 from sim_node.physics import Array, Vector
 from sim_node.sensed_world import Hardware
 from sim_node.sensor_intake import SensorIntake
@@ -57,16 +63,19 @@ NAME = "robot_hardware"
 _TURN_S = 0.2
 _FIRST_S = 1.0
 """For the sensors to be heard of before a walk."""
+_ASKED_S = 10.0
+"""A person who has asked for a walk is taken to hold the robot for so long."""
 # From where the joints are to the stance, and standing there.
-_TO_STANCE_TICKS = microseconds(2.0) // CONTROL_PERIOD_US
-_STANDING_TICKS = microseconds(0.5) // CONTROL_PERIOD_US
+_TO_STANCE_TICKS = control_ticks(2.0)
+_STANDING_TICKS = control_ticks(0.5)
 _LOOK_AHEAD_TICKS = 50
+_GOES_ON_TICKS = TICKS_PER_LEARNING_TICK
+"""Until it is asked to stay: readings are of the past, and joints do not jump back."""
 # What standing is: each sole's share of the weight, and how far a joint may be off.
 _SHARE = 0.2
 _OFF_RAD = 0.05
 _STANDING = 0
 _KEPT_READINGS = 500
-_TICK_NS = CONTROL_PERIOD_US * 1000
 
 
 class RobotHardware(Hardware):
@@ -84,11 +93,16 @@ class RobotHardware(Hardware):
         self._stance = np.empty(0)
         self._intake = SensorIntake()
         self._changed = threading.Condition()
-        self._begun = False
-        """Somebody has asked for the next walk."""
+        self._asked_s: float | None = None
+        """When somebody has asked for the next walk, on the monotonic clock."""
+        self._under_way = False
+        """A walk, or the way to the stance."""
         self._walked = False
         """The robot has been driven; before, it is taken to stand as it is asked to."""
-        self._stop = False
+        self._pressed = False
+        """The emergency stop, now."""
+        self._stopped = False
+        """It was pressed since the walk was asked for."""
         self._readings: deque[tuple[int, SensorReading]] = deque(maxlen=_KEPT_READINGS)
         """Stamp [ns] and values, of all ticks that are still to be walked."""
         self._origin_ns: int | None = None
@@ -103,9 +117,11 @@ class RobotHardware(Hardware):
     # -- hardware ------------------------------------------------------------------
 
     def ready(self) -> bool:
-        """Return whether somebody has asked for the next walk."""
+        """Return whether somebody has asked for the next walk; the last one is over."""
         self._join()
-        return self._begun
+        with self._changed:
+            self._under_way = False
+            return self._asked()
 
     def place(self, waist: Array, q: Array) -> None:
         """Take note of the stance; the robot gets there when a walk begins."""
@@ -122,9 +138,9 @@ class RobotHardware(Hardware):
                 self._origin_ns, self._tick = self._intake.stamp_ns, 0
             ahead = self._tick_of(self._intake.stamp_ns) - self._tick
             self._late = ahead > TICKS_PER_LEARNING_TICK
-        if not (self._late or self._stop):
-            self._sent = self._tick, positions
-            self._send(*self._sent)
+            if not (self._late or self._stopped):
+                self._sent = self._tick, positions
+                self._send(*self._sent)
 
     def exchange(self, q: Array, dq: Array) -> SensorReading:
         """Wait for the readings after the next control tick of what was planned.
@@ -137,21 +153,30 @@ class RobotHardware(Hardware):
         if not self._walked:
             return self._taken_to_stand(q)
         self._tick += 1
-        cause = EndCause.LATE if self._late else None
         with self._changed:
             self._changed.wait_for(
-                lambda: self._stop or self._arrived(), self._timeout_s
+                lambda: self._stopped or self._arrived(), self._timeout_s
             )
-            if self._stop:
+            if self._stopped:
                 cause = EndCause.EMERGENCY_STOP
-            elif cause is None and not self._arrived():
+            elif self._late:
+                cause = EndCause.LATE
+            elif not self._arrived():
                 cause = EndCause.SENSORS_SILENT
-            elif cause is None and not self._readings[0][1].usable:
+            elif not self._readings[0][1].usable:
                 cause = EndCause.SENSORS_INVALID
-            if cause is None:
+            else:
                 return self._readings[0][1]
-        self._hold()
+            if cause is not EndCause.SENSORS_SILENT:
+                self._hold()
+            self._under_way = False
         raise PlantStoppedError(cause)
+
+    def stop(self) -> None:
+        """Have the joints stay, if a walk is under way."""
+        with self._changed:
+            self._hold()
+            self._under_way = False
 
     def push(self, force_n: Vector) -> None:
         """Do nothing: a real robot is pushed by hand."""
@@ -160,11 +185,20 @@ class RobotHardware(Hardware):
         """Do nothing: a real robot weighs what it weighs."""
 
     def save(self) -> int:
-        """Return the handle of the stance, the only state that there is."""
+        """Return the handle of the stance, the only state that there is.
+
+        Raises:
+            SnapshotError: the robot has walked since; nobody can put it back there.
+        """
+        if self._walked:
+            raise SnapshotError("a real robot can be put back into its stance only")
         return _STANDING
 
-    def load(self, handle: int) -> None:
+    def load(self, handle: int) -> Sequence[SensorReading]:
         """Wait until somebody asks for it, and have the robot stand in its stance.
+
+        Returns:
+            What was read while it stood there.
 
         Raises:
             PlantStoppedError: the walk cannot begin.
@@ -172,17 +206,21 @@ class RobotHardware(Hardware):
         del handle
         self._join()
         with self._changed:
-            if not self._begun:
+            self._under_way = False
+            if not self._asked():
                 self._node.get_logger().info(f"waiting for a call of /{NAME}/begin")
-            self._changed.wait_for(lambda: self._begun)
-            self._begun = False
+            self._changed.wait_for(self._asked)
+            self._asked_s, self._under_way, self._stopped = None, True, False
         self._walked = True
-        reading = self._go_to_stance(self._newest().joints[: len(self._stance)])
-        off_rad = abs(reading.joints[: len(self._stance)] - self._stance).max()
+        stood = self._go_to_stance(self._newest().joints[: len(self._stance)])
+        last = stood[-1]
+        off_rad = abs(last.joints[: len(self._stance)] - self._stance).max()
         if not (
-            off_rad < _OFF_RAD and reading.soles[:, 0].min() > _SHARE * self._weight_n
+            off_rad < _OFF_RAD and last.soles[:, 0].min() > _SHARE * self._weight_n
         ):
+            self.stop()
             raise PlantStoppedError(EndCause.NOT_STANDING)
+        return stood
 
     def release(self, handle: int) -> None:
         """Do nothing; the stance stays."""
@@ -190,6 +228,7 @@ class RobotHardware(Hardware):
     def close(self) -> None:
         """Leave the graph; harmless when repeated."""
         if self._context is not None:
+            self.stop()
             self._closing.set()
             self._thread.join()
             self._node.destroy_node()
@@ -197,6 +236,11 @@ class RobotHardware(Hardware):
             self._context = None
 
     # -- commands and readings -----------------------------------------------------
+
+    def _asked(self) -> bool:
+        """Return whether somebody has asked for a walk a moment ago."""
+        asked_s = self._asked_s
+        return asked_s is not None and time.monotonic() - asked_s < _ASKED_S
 
     def _newest(self) -> SensorReading:
         """Return what is read from now on, not what was heard of last.
@@ -214,49 +258,56 @@ class RobotHardware(Hardware):
             raise PlantStoppedError(EndCause.SENSORS_INVALID)
         return reading
 
-    def _go_to_stance(self, start: Array) -> SensorReading:
-        """Lead the (12,) joints to the stance, and stay; return the last readings."""
+    def _go_to_stance(self, start: Array) -> list[SensorReading]:
+        """Lead the (12,) joints to the stance; return the readings of standing there.
+
+        Raises:
+            PlantStoppedError: it cannot go on.
+        """
         # The path of least jerk: at rest at both ends.
         s = np.arange(1, _TO_STANCE_TICKS + 1)[:, None] / _TO_STANCE_TICKS
         share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
         stands = np.tile(self._stance, (_STANDING_TICKS + _LOOK_AHEAD_TICKS, 1))
         way = np.vstack([start + share * (self._stance - start), stands])
         self._origin_ns, self._sent = None, (0, way[:0])
+        readings = []
         for tick in range(0, len(way) - _LOOK_AHEAD_TICKS, TICKS_PER_LEARNING_TICK):
             self.plan(way[tick : tick + TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS])
             for _ in range(TICKS_PER_LEARNING_TICK):
-                reading = self.exchange(self._stance, np.zeros(0))
+                readings.append(self.exchange(self._stance, np.zeros(0)))
         self._origin_ns = None
-        return reading
+        return readings[-_STANDING_TICKS:]
 
     def _send(self, tick: int, positions: Array) -> None:
         """Have the joints follow (ticks, 12) positions from after a tick on."""
-        stamp_ns = (self._origin_ns or 0) + tick * _TICK_NS
+        stamp_ns = (self._origin_ns or 0) + tick * CONTROL_PERIOD_NS
         message = JointTrajectory(joint_names=list(JOINT_NAMES))
         message.header.stamp = Time(nanoseconds=stamp_ns).to_msg()
         message.points = [
             JointTrajectoryPoint(
                 positions=row,
-                time_from_start=Duration(nanoseconds=i * _TICK_NS).to_msg(),
+                time_from_start=Duration(nanoseconds=i * CONTROL_PERIOD_NS).to_msg(),
             )
             for i, row in enumerate(positions.tolist(), start=1)
         ]
         self._commands.publish(message)
 
     def _hold(self) -> None:
-        """Have the joints stay where they are asked to be now.
+        """Have the joints stay where they are asked to be in a moment, if they move.
 
         For a while: a controller refuses a trajectory that has ended when it comes.
         """
         begun, positions = self._sent
-        if len(positions) > 0:
+        if self._under_way and len(positions) > 0:
             now = self._tick_of(self._intake.stamp_ns)
-            row = min(max(now - begun - 1, 0), len(positions) - 1)
-            self._send(now, positions[[row] * _LOOK_AHEAD_TICKS])
+            rows = now - begun + np.arange(_LOOK_AHEAD_TICKS)
+            last = min(now - begun + _GOES_ON_TICKS, len(positions)) - 1
+            self._send(now, positions[rows.clip(0, max(last, 0))])
+            self._sent = begun, positions[:0]
 
     def _tick_of(self, stamp_ns: int) -> int:
         """Return the control tick, since a walk's first, that a stamp belongs to."""
-        return round((stamp_ns - (self._origin_ns or 0)) / _TICK_NS)
+        return round((stamp_ns - (self._origin_ns or 0)) / CONTROL_PERIOD_NS)
 
     def _arrived(self) -> bool:
         """Return whether the readings after the present tick have come, or later ones.
@@ -330,22 +381,27 @@ class RobotHardware(Hardware):
 
     def _on_emergency_stop(self, message: Bool) -> None:
         with self._changed:
-            self._stop = message.data
+            self._pressed = message.data
+            if self._pressed:
+                self._stopped, self._asked_s = True, None
+                self._hold()
             self._changed.notify_all()
 
     def _on_begin(
         self, _: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
         with self._changed:
-            if self._stop:
+            if self._pressed:
                 response.message = "the emergency stop is pressed"
+            elif self._under_way:
+                response.message = "a walk is under way"
             elif self._intake.newest is None:
                 response.message = "not all sensors have been heard yet"
             elif self._commands.get_subscription_count() == 0:
                 topic = topics.HARDWARE_COMMANDS.name
                 response.message = f"nobody listens to {topic}"
             else:
-                self._begun = response.success = True
+                self._asked_s, response.success = time.monotonic(), True
                 response.message = "the joints go to the stance; hold the robot"
                 self._changed.notify_all()
         return response

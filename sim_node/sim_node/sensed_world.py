@@ -7,6 +7,7 @@ floor and waist is the observer's estimate.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from biped_description.robot import Robot
@@ -42,11 +43,17 @@ class Hardware(Protocol):
     def save(self) -> int:
         """Keep the present state; return its handle."""
 
-    def load(self, handle: int) -> None:
-        """Go back to a kept state."""
+    def load(self, handle: int) -> Sequence[SensorReading]:
+        """Go back to a kept state; return what was read there since it was kept.
+
+        Nothing is, where a state comes back bit for bit.
+        """
 
     def release(self, handle: int) -> None:
         """Forget a kept state."""
+
+    def stop(self) -> None:
+        """Have the joints stay: a walk was ended by whoever guides the robot."""
 
     def close(self) -> None:
         """Let go of the robot; harmless when repeated."""
@@ -126,13 +133,19 @@ class SensedWorld(Physics):
 
     def load(self, handle: int) -> None:
         """Go back to a kept state."""
-        self.hardware.load(handle)
+        readings = self.hardware.load(handle)
         self._observer.state = self._kept[handle]
+        for reading in readings:
+            self._observer.update(reading)
 
     def release(self, handle: int) -> None:
         """Forget a kept state."""
         self.hardware.release(handle)
         self._kept.pop(handle, None)
+
+    def stop(self) -> None:
+        """Have the joints stay."""
+        self.hardware.stop()
 
     def close(self) -> None:
         """Let go of the hardware."""

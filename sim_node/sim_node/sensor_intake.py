@@ -1,7 +1,7 @@
 """Makes readings of the sensors' messages: one of each topic, of the same update.
 
 All broadcasters of one controller manager stamp the messages of one update alike; which
-of them arrives first is the middleware's business.
+of them arrives first is the middleware's business. A stamp before time 0 is of none.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class SensorIntake:
 
     def _arrived(self, topic: int, message: Any) -> None:
         self._stamps[topic] = stamp_ns = nanoseconds(message.header.stamp)
-        if len(set(self._stamps)) == 1:
+        if stamp_ns >= 0 and len(set(self._stamps)) == 1:
             self.newest = SensorReading(self._joints, *self._imu, self._soles)
             self.stamp_ns = stamp_ns
             self.complete += 1

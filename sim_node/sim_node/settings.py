@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from biped_common.settings import Settings, SettingsError, section, setting
+from biped_common.settings import (
+    Settings,
+    SettingsError,
+    section,
+    setting,
+    to_mapping,
+)
 from biped_description.settings import RobotSettings
 from biped_ros.processor import ProcessorSettings
 from sim_node.engines import ENGINES
@@ -12,7 +18,8 @@ from sim_node.servo import ServoSettings
 
 ROBOT = "robot"
 """Instead of an engine."""
-_FELT_BY_NO_ROBOT = ("friction", "torque_limit_factor", "mass_error", "push_force_n")
+_FELT_BY_A_PLAYED_ROBOT = ("friction", "torque_limit_factor")
+_FELT_BY_NO_ROBOT = (*_FELT_BY_A_PLAYED_ROBOT, "mass_error", "push_force_n")
 
 
 @dataclass(frozen=True)
@@ -270,6 +277,14 @@ class HardwareNodeSettings(Settings):
     )
 
     def check_together(self) -> None:
-        """Refuse to play a real robot on a real robot."""
+        """Refuse to play a real robot on a real robot, and what has no effect here."""
         if self.sim.engine == ROBOT:
             raise SettingsError("sim.engine", ROBOT, "must be one that simulates")
+        for name, nominal in to_mapping(DisturbanceSettings()).items():
+            value = getattr(self.sim.disturbances, name)
+            if value != nominal and name not in _FELT_BY_A_PLAYED_ROBOT:
+                raise SettingsError(
+                    f"sim.disturbances.{name}",
+                    value,
+                    f"must be {nominal}: it has no effect on a robot that is played",
+                )

@@ -6,6 +6,7 @@ out of here, and where the robot truly is, is nobody's to know.
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import Any
 
@@ -16,7 +17,9 @@ from biped_common.timing import CONTROL_PERIOD_S
 from biped_description.joints import JOINT_NAMES
 from biped_description.multilink_zmp import GRAVITY_M_S2
 from biped_description.robot import Robot
+from msgs_json.end_cause import EndCause
 from sim_node.contact import NO_CONTACT, FloorContact
+from sim_node.errors import PlantStoppedError
 from sim_node.observer import rotation
 from sim_node.physics import Array, Physics, Vector
 from sim_node.sensors import SensorReading
@@ -87,9 +90,16 @@ class SimulatedHardware:
         Args:
             q: (12,) reference positions now [rad].
             dq: (12,) reference velocities until the next tick [rad/s].
+
+        Raises:
+            PlantStoppedError: the physics has come to what is no number.
         """
         joints = np.empty(3 * _N_JOINTS)
         self.contact = self.plant.step(q, dq, joints)
+        # Without load, the ZMP's place means nothing.
+        felt = self.contact if self.contact.loaded else self.contact[2:]
+        if not math.isfinite(joints.sum() + sum(felt)):
+            raise PlantStoppedError(EndCause.PHYSICS_NAN)
         velocity = np.array(self.plant.waist().velocity)
         acceleration = (velocity - self._velocity) / CONTROL_PERIOD_S
         acceleration[2] += GRAVITY_M_S2
@@ -124,17 +134,21 @@ class SimulatedHardware:
         self._kept[handle] = self._velocity, tuple(self._late)
         return handle
 
-    def load(self, handle: int) -> None:
-        """Go back to a kept state."""
+    def load(self, handle: int) -> tuple[SensorReading, ...]:
+        """Go back to a kept state, bit for bit; nothing was read there since."""
         self.plant.load(handle)
         self._velocity, late = self._kept[handle]
         self._late.clear()
         self._late.extend(late)
+        return ()
 
     def release(self, handle: int) -> None:
         """Forget a kept state."""
         self.plant.release(handle)
         self._kept.pop(handle, None)
+
+    def stop(self) -> None:
+        """Do nothing: no time goes on without an exchange."""
 
     def close(self) -> None:
         """End the plant; harmless when repeated."""

@@ -9,7 +9,7 @@ from tests.biped_bag.bags import RELIABLE, START_NS, TICK_NS, record
 from tests.payloads import STAMPED_PHASE
 
 from biped_bag.errors import BagError
-from biped_bag.export import export, topic_table
+from biped_bag.export import export
 from biped_bag.storage.contents import BagMessage, BagTopic
 from biped_bag.storage.reader import BagReader
 from biped_bag.storage.writer import BagWriter
@@ -37,6 +37,12 @@ def bag_of(folder, *messages):
     return BagReader(folder)
 
 
+def exported(bag, name, folder):
+    """Return the table of one topic."""
+    (done,) = export(bag, folder / "tables", "parquet", [name])
+    return pyarrow.parquet.read_table(done.file)
+
+
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     """A bag of 20 control ticks."""
@@ -53,8 +59,8 @@ def test_a_topic_becomes_one_file_with_one_row_per_message(walk, tmp_path):
     assert table.num_rows == 20
 
 
-def test_joints_have_columns_by_name_with_units(walk):
-    table = topic_table(walk, STATES)
+def test_joints_have_columns_by_name_with_units(walk, tmp_path):
+    table = exported(walk, STATES, tmp_path)
     expected = ["log_time_ns", "stamp_ns", "frame_id"]
     for field in ("position_{}_rad", "velocity_{}_rad_s", "effort_{}_n_m"):
         expected += [field.format(joint) for joint in JOINT_NAMES]
@@ -71,9 +77,9 @@ def test_points_are_named_for_what_they_are(tmp_path):
     point = point_template().fill((0.1, -0.02), 3)
     correction = correction_template().fill((0.004, 0.001), 3)
     bag = bag_of(tmp_path / "bag", (topics.ZMP, point), (topics.CORRECTION, correction))
-    zmp = topic_table(bag, topics.ZMP.name).to_pylist()[0]
+    zmp = exported(bag, topics.ZMP.name, tmp_path).to_pylist()[0]
     assert (zmp["zmp_x_m"], zmp["zmp_y_m"]) == (0.1, -0.02)
-    row = topic_table(bag, topics.CORRECTION.name).to_pylist()[0]
+    row = exported(bag, topics.CORRECTION.name, tmp_path).to_pylist()[0]
     assert (row["correction_x_m"], row["frame_id"]) == (0.004, "world")
 
 
@@ -81,7 +87,7 @@ def test_json_payloads_become_columns(tmp_path):
     bag = bag_of(
         tmp_path / "bag", (topics.PHASE, string_message(encode(STAMPED_PHASE)))
     )
-    row = topic_table(bag, topics.PHASE.name).to_pylist()[0]
+    row = exported(bag, topics.PHASE.name, tmp_path).to_pylist()[0]
     assert row["step_index"] == 2
     assert row["planned_right_support"] is True
     assert row["clock_ticks"] == 1040
@@ -91,7 +97,7 @@ def test_waist_references_are_lists_over_their_rows(tmp_path):
     values = range(3 * 4 * 3)
     segment = segment_template(3).fill([float(value) for value in values], 5)
     bag = bag_of(tmp_path / "bag", (topics.WAIST_REFERENCE, segment))
-    row = topic_table(bag, topics.WAIST_REFERENCE.name).to_pylist()[0]
+    row = exported(bag, topics.WAIST_REFERENCE.name, tmp_path).to_pylist()[0]
     assert row["waist_y_m"] == [1.0, 13.0, 25.0]
     assert row["time_from_start_ns"] == [0, TICK_NS, 2 * TICK_NS]
 
@@ -100,7 +106,7 @@ def test_csv_says_the_same_as_parquet(walk, tmp_path):
     (done,) = export(walk, tmp_path, "csv", [STATES])
     with done.file.open() as stream:
         rows = list(csv.DictReader(stream))
-    table = topic_table(walk, STATES).to_pylist()
+    table = exported(walk, STATES, tmp_path).to_pylist()
     assert [float(row["position_left_knee_rad"]) for row in rows] == [
         row["position_left_knee_rad"] for row in table
     ]

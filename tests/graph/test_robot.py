@@ -21,6 +21,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from biped_bringup.run_settings import load_settings
 from biped_bringup.training import TrainingRun
+from biped_common.timing import TICKS_PER_LEARNING_TICK
 from biped_description.robot import Robot
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
@@ -148,33 +149,63 @@ def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
     observation = begin(biped, person, 1)
     assert observation.end_cause is None
     static = segments()
-    for _ in range(30):
+    while observation.end_cause is None and observation.control_tick < 300:
         observation = biped.execute(next(static))
     # It stood on straight legs; it has bent them and begun to shift its weight.
     assert (observation.control_tick, observation.end_cause) == (300, None)
     assert observation.worst_zmp_error_m < 0.03
     assert biped.world.waist().position[2] == pytest.approx(0.475, abs=0.002)
 
-    person.press(True)
-    while biped.end_cause is None:
-        observation = biped.execute(next(static))
-    assert observation.end_cause is EndCause.EMERGENCY_STOP
-    asked = person.last_asked()
-    assert (len(asked), np.ptp(asked, axis=0).max()) == (50, 0.0)  # to stay
+    refused = person.call("/robot_hardware/begin")
+    assert (refused.success, refused.message) == (False, "a walk is under way")
+    person.press(True)  # between two segments, and let go before the next one
+    assert_asked_to_stay(person)
     refused = person.call("/robot_hardware/begin")
     assert (refused.success, refused.message) == (
         False,
         "the emergency stop is pressed",
     )
-
     person.press(False)
+    observation = biped.execute(next(static))
+    assert observation.end_cause is EndCause.EMERGENCY_STOP
+
     assert person.call("/simulated_hardware/reset").success
     assert begin(biped, person, 2).end_cause is None
     static = segments()
     assert biped.execute(next(static)).end_cause is None
+    biped.end(EndCause.RESET)
+    assert_asked_to_stay(person)
 
+    assert person.call("/simulated_hardware/reset").success
+    assert begin(biped, person, 3).end_cause is None
+    static = segments()
+    assert biped.execute(next(static)).end_cause is None
     hardware.kill()
     assert biped.execute(next(static)).end_cause is EndCause.SENSORS_SILENT
+
+
+def test_who_has_asked_for_a_walk_asks_again_after_an_emergency_stop(
+    new_biped, hardware, person
+):
+    robot = new_biped(SHIPPED).world.hardware
+    assert not robot.ready()
+    person.have_it_walk()
+    assert robot.ready()
+    person.press(True)
+    person.press(False)
+    end = time.monotonic() + TIMEOUT_S
+    while robot.ready():
+        assert time.monotonic() < end
+
+
+def assert_asked_to_stay(person):
+    """Where the last segment led to: without a jump, and for a while."""
+    asked = person.last_asked()
+    assert len(asked) == 50
+    assert np.ptp(asked, axis=0).max() == 0.0
+    segment = person.asked[-2].points
+    assert len(segment) == TICKS_PER_LEARNING_TICK
+    assert asked[0].tolist() == list(segment[-1].positions)
 
 
 @pytest.mark.parametrize("hardware", [IN_ITS_OWN_TIME], indirect=True)

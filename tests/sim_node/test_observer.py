@@ -1,5 +1,6 @@
 """What the observer makes of sensors, beside the truth that the engine knows."""
 
+from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -7,13 +8,18 @@ import pytest
 from tests.robots import SHIPPED
 
 from biped_common.settings import to_mapping
+from biped_common.timing import CONTROL_PERIOD_S
 from msgs_json.end_cause import EndCause
 from sim_node.biped import SimulatedBiped
+from sim_node.engines import plant_of
 from sim_node.observer import Observer
+from sim_node.sensed_world import SensedWorld
 from sim_node.sensors import SensorReading
 from sim_node.settings import LimitSettings, SensorSettings, SimSettings
+from sim_node.simulated_hardware import SimulatedHardware
 
 NO_NOISE = {name: 0.0 for name in to_mapping(SensorSettings()) if "_noise_" in name}
+STANCE, LEFT, RIGHT = np.array([[[0, 0, 0.475]], [[0, 0.09, 0]], [[0, -0.09, 0]]])
 SEGMENTS = 120  # double support, two steps and a change of feet
 
 
@@ -136,6 +142,11 @@ class Broken:
     def exchange(self, q, dq):
         return self._change(self._hardware.exchange(q, dq))
 
+    def step(self, q, dq, joints):
+        contact = self._hardware.step(q, dq, joints)
+        joints[20] = np.nan
+        return contact
+
     def __getattr__(self, name):
         return getattr(self._hardware, name)
 
@@ -185,6 +196,45 @@ def test_two_observations_never_share_a_time_though_a_walk_breaks(sensed, static
     walk.biped.world.hardware = Broken(walk.biped.world.hardware, nan_in_a_joint)
     after = walk.biped.execute(static_walk[5])
     assert after.clock_ticks == before.clock_ticks + 1
+
+
+class Ahead(SimulatedHardware):
+    """Does not come to the stance; it stands a centimetre ahead of it."""
+
+    def load(self, handle):
+        super().load(handle)
+        stance, left, right = np.repeat([STANCE, LEFT, RIGHT], 1000, axis=1)
+        stance[:, 0] = np.linspace(0.0, 0.02, 1000).clip(max=0.01)
+        motion = SHIPPED.leg_joint_positions(stance, left, right)
+        rates = np.diff(motion, axis=0) / CONTROL_PERIOD_S
+        return list(map(self.exchange, motion, rates))
+
+
+def test_a_walk_begins_where_the_robot_was_read_to_stand(static_walk):
+    rng = np.random.default_rng(0)
+    sensors = SensorSettings(delay_ticks=0, **NO_NOISE)
+    plant = plant_of("pybullet")(SHIPPED, 0.9, SHIPPED.torque_limit_nm)
+    world = SensedWorld(SHIPPED, Ahead(plant, SHIPPED, sensors, rng), 0.3)
+    with closing(world):
+        q = SHIPPED.leg_joint_positions(STANCE, LEFT, RIGHT)[0]
+        world.place(STANCE[0], q)
+        for _ in range(150):
+            world.step(q, np.zeros(12), np.empty(36))
+        world.load(world.save())
+        true, seen = plant.waist(), world.waist()
+    assert true.position[0] == pytest.approx(0.01, abs=1e-3)
+    assert seen.position == pytest.approx(true.position, abs=3e-4)
+    assert seen.velocity == pytest.approx(true.velocity, abs=5e-3)
+
+
+def test_physics_that_come_to_no_number_are_no_fault_of_the_sensors(
+    sensed, static_walk
+):
+    walk = sensed()
+    walk.walk(static_walk[:5])
+    plant = walk.biped.world.hardware.plant
+    walk.biped.world.hardware.plant = Broken(plant, None)
+    assert walk.biped.execute(static_walk[5]).end_cause is EndCause.PHYSICS_NAN
 
 
 # -- the IMU's heading -----------------------------------------------------------------

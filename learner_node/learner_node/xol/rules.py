@@ -19,7 +19,7 @@ _FIRST_CAPACITY = 64
 
 
 class RuleTable:
-    """Per state and sub-rule: weights, eligibility and selection/failure counts.
+    """Per state and sub-rule: weights, and counts of selections and failures.
 
     Arrays (capacity rows, the first `NB` in use; I, J = table_shape):
         q: (., I, J) weight Q of profit sharing.

@@ -67,6 +67,14 @@ def test_what_led_there_before_it_was_a_penalty_state_is_judged_too():
     assert penalty_states(learner, "AB") == "AB"
 
 
+def test_a_reward_on_the_way_hides_no_transition():
+    learner = new(PARP, (2,))
+    (chosen,) = visit(learner, "A")[0]
+    learner.reward(1.0, counts=True)
+    learner.advance(at("B"))
+    assert learner.transitions == {(0, 0, chosen, 1)}
+
+
 def test_one_component_without_a_way_out_is_enough():
     learner = new(PARP, (2, 9))
     fail(learner, "A", times=2)

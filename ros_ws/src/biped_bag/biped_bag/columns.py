@@ -22,7 +22,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 from biped_bag.errors import BagError
 from biped_bag.storage.contents import BagTopic
-from biped_common.timing import NS_PER_S
+from biped_common.timing import nanoseconds
 from msgs_json import topics
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.learner_status import LearnerStatus
@@ -121,7 +121,7 @@ def _trajectory_columns(message: Any) -> Iterator[tuple[str, Any]]:
     yield from _header_columns(message.header)
     yield (
         "time_from_start_ns",
-        [_nanoseconds(point.time_from_start) for point in message.points],
+        [nanoseconds(point.time_from_start) for point in message.points],
     )
     for i, part in enumerate(message.joint_names):
         unit = "" if part in ("phase", "extent") else "_m"
@@ -138,7 +138,7 @@ def _columns(message: Any, prefix: str) -> Iterator[tuple[str, Any]]:
         if name == "header" and hasattr(value, "frame_id"):
             yield from _header_columns(value, prefix)
         elif _is_time(value):
-            yield f"{prefix}{name}_ns", _nanoseconds(value)
+            yield f"{prefix}{name}_ns", nanoseconds(value)
         elif hasattr(value, "__slots__"):
             yield from _columns(value, f"{prefix}{name}_")
         elif isinstance(value, str | bytes | bool | int | float):
@@ -150,16 +150,12 @@ def _columns(message: Any, prefix: str) -> Iterator[tuple[str, Any]]:
 
 
 def _header_columns(header: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
-    yield f"{prefix}stamp_ns", _nanoseconds(header.stamp)
+    yield f"{prefix}stamp_ns", nanoseconds(header.stamp)
     yield f"{prefix}frame_id", header.frame_id
 
 
 def _is_time(value: Any) -> bool:
     return tuple(getattr(value, "__slots__", ())) == ("sec", "nanosec")
-
-
-def _nanoseconds(time: Any) -> int:
-    return int(time.sec) * NS_PER_S + int(time.nanosec)
 
 
 def _plain(value: Any) -> Any:

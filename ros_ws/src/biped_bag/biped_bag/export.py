@@ -94,15 +94,6 @@ def export(
     return done
 
 
-def topic_table(bag: BagReader, name: str) -> pa.Table:
-    """Return all messages of a topic, one row each.
-
-    Raises:
-        BagError: a message cannot be understood.
-    """
-    return pa.concat_tables(_tables(bag, name), promote_options="permissive")
-
-
 def _write(
     bag: BagReader,
     name: str,

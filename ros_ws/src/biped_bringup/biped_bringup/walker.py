@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from biped_bringup.run_settings import RunSettings
+from biped_common.settings import SettingsError
 from biped_description.robot import Robot
 from msgs_json.episode_result import EpisodeResult
 from msgs_json.observation import Observation
 from sim_node.biped import SimulatedBiped
 from sim_node.control_tick import ControlTick
+from sim_node.settings import ROBOT
 from trajectory_node.waist_reference import WaistReference
 
 
@@ -55,7 +57,13 @@ class Walker:
             settings: of the whole run.
             rng: source of the disturbances.
             on_tick: called after every control tick.
+
+        Raises:
+            SettingsError: the robot is a real one, which nodes walk.
         """
+        if settings.sim.engine == ROBOT:
+            problem = "must be a simulated one here; a real one is walked by `biped up`"
+            raise SettingsError("sim.engine", ROBOT, problem)
         robot = Robot(settings.robot)
         self.reference = WaistReference(robot, settings.gait, settings.correction)
         self.biped = SimulatedBiped(

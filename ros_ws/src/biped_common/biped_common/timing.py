@@ -7,6 +7,7 @@ from typing import Any
 CONTROL_PERIOD_US = 2_000
 TICKS_PER_LEARNING_TICK = 10
 CONTROL_PERIOD_S = CONTROL_PERIOD_US * 1e-6
+CONTROL_PERIOD_NS = CONTROL_PERIOD_US * 1000
 LEARNING_PERIOD_US = CONTROL_PERIOD_US * TICKS_PER_LEARNING_TICK
 LEARNING_PERIOD_S = LEARNING_PERIOD_US * 1e-6
 NS_PER_S = 1_000_000_000
@@ -29,4 +30,4 @@ def microseconds(duration_s: float) -> int:
 
 def nanoseconds(time: Any) -> int:
     """Return a builtin_interfaces Time or Duration in nanoseconds."""
-    return int(time.sec) * 10**9 + int(time.nanosec)
+    return int(time.sec) * NS_PER_S + int(time.nanosec)

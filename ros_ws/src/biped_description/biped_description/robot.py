@@ -174,18 +174,6 @@ class Robot:
         positions, _ = self.foot_poses(q)
         return positions[0], positions[1]
 
-    def foot_orientations(self, q: ArrayLike) -> tuple[Array, Array]:
-        """Return the rotations (n, 3, 3) of the left and the right foot to the torso.
-
-        Their columns are the foot's x, y and z axes in the torso's frame; a flat foot
-        under an upright torso gives the identity.
-
-        Args:
-            q: (n, 12) joint positions.
-        """
-        _, orientations = self.foot_poses(q)
-        return orientations[0], orientations[1]
-
     def link_com_positions(self, waist: ArrayLike, q: ArrayLike) -> Array:
         """Return the CoM of every link (n, 13, 3), in the order of ``LINK_NAMES``.
 

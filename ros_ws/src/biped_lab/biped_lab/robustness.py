@@ -34,7 +34,7 @@ from biped_bringup.run_settings import (
 from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_common.command_line import positive
-from biped_common.seeds import learner_stream, robot_stream
+from biped_common.seeds import learner_stream, robot_stream, trial_stream
 from biped_lab.markdown import Table
 from biped_lab.searches.plan import PlanSpace
 from biped_lab.searches.search_contestant import PlannedWalk
@@ -132,7 +132,7 @@ def completed(
     learned: Learned, settings: RunSettings, seed: int, walks: int = 1
 ) -> int:
     """Walk what was learned; return how many walks came to the end."""
-    walker = Walker(settings, np.random.default_rng(robot_stream(seed)))
+    walker = Walker(settings, np.random.default_rng(trial_stream(seed)))
     with closing(walker):
         return sum(walker.walk(learned.walk()).completed for _ in range(walks))
 

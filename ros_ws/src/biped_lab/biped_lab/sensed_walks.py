@@ -29,7 +29,7 @@ from biped_bringup.run_settings import (
 )
 from biped_bringup.walker import Walker
 from biped_common.command_line import positive
-from biped_common.seeds import robot_stream
+from biped_common.seeds import trial_stream
 from biped_common.settings import to_mapping
 from biped_lab.markdown import Table
 from biped_lab.robustness import Learned, learn
@@ -98,7 +98,7 @@ def walked(
 
     walker = Walker(
         changed_settings(settings, changes=changes),
-        np.random.default_rng(robot_stream(seed)),
+        np.random.default_rng(trial_stream(seed)),
         look,
     )
     outcomes = []

@@ -2,10 +2,10 @@
 
     python -m biped_lab.several_plants --seeds 20
 
-Learns with the same seeds on each engine, on both in turns of chance, and on both with
-friction drawn as well; then walks what was learned, frozen, on each plant. Prints a
-table in Markdown: episodes to the learned walk (inf: not learned), and how many walks
-were completed.
+Learns with the same seeds on PyBullet, on MuJoCo, on either in turns of chance, and on
+either with friction drawn as well; then walks what was learned, frozen, on each plant.
+Prints a table in Markdown: episodes to the learned walk (inf: not learned), and how
+many walks were completed.
 """
 
 from __future__ import annotations

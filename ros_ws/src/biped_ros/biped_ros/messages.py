@@ -12,7 +12,7 @@ from geometry_msgs.msg import Vector3Stamped
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
 
-from biped_common.timing import CONTROL_PERIOD_US
+from biped_common.timing import CONTROL_PERIOD_NS
 from biped_ros.cdr import MessageTemplate, read_stamp
 from biped_ros.tf_type import TF_TYPE, tf_message_class
 from msgs_json.segment import WaistSegment
@@ -117,7 +117,7 @@ def segment_template(rows: int) -> MessageTemplate:
                 template.constant(component)
         # Neither velocities nor accelerations; time from start.
         template.integer(0).integer(0).integer(0)
-        template.integer(row * CONTROL_PERIOD_US * 1000)
+        template.integer(row * CONTROL_PERIOD_NS)
     return template.finished()
 
 

@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message
 
 from biped_bag.qos import RECORDED_DEPTH
 from biped_bag.storage.contents import BagMessage
-from biped_common.timing import NS_PER_S
+from biped_common.timing import nanoseconds
 from biped_ros.messages import message_type
 from msgs_json.topics import CLOCK
 
@@ -56,6 +56,5 @@ class SimTime:
         with queue:  # keeps it from being destroyed
             while (taken := queue.take_message(self._clock, True)) is not None:
                 data, about = taken
-                stamp = deserialize_message(data, self._clock).clock
-                time_ns = stamp.sec * NS_PER_S + stamp.nanosec
+                time_ns = nanoseconds(deserialize_message(data, self._clock).clock)
                 self._ticks.append((about["received_timestamp"], time_ns))

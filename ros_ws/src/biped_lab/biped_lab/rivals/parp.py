@@ -98,14 +98,21 @@ class Parp(EpisodicProfitSharing):
         """Take the initial state."""
         super().begin_episode(inputs)
         self._new_transitions.clear()
+        self._chosen: list[int] = []
+
+    def choose(self) -> NDArray[np.int64]:
+        """Choose by the roulette, and remember it."""
+        alternatives = super().choose()
+        # Beside the series, which a reward empties.
+        self._chosen = self.series[-1][1].tolist()
+        return alternatives
 
     def advance(self, inputs: NDArray[np.float64]) -> None:
         """Move to the next state, and remember what led to it."""
         origin = self.state
         super().advance(inputs)
-        if self.state != origin and self.series:
-            chosen = self.series[-1][1].tolist()
-            seen = {(origin, i, j, self.state) for i, j in enumerate(chosen)}
+        if self.state != origin:
+            seen = {(origin, i, j, self.state) for i, j in enumerate(self._chosen)}
             self._new_transitions |= seen - self.transitions
             self.transitions |= seen
 
