@@ -1,7 +1,8 @@
 """Makes readings of the sensors' messages: one of each topic, of the same update.
 
 All broadcasters of one controller manager stamp the messages of one update alike; which
-of them arrives first is the middleware's business. A stamp before time 0 is of none.
+of them arrives first is the middleware's business, and those of one topic may be some
+updates ahead of another's. A stamp before time 0 is of no update.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from biped_description.joints import JOINT_NAMES
 from sim_node.physics import Array
 from sim_node.sensors import SensorReading
 
-_JOINTS, _IMU, _LEFT, _RIGHT = range(4)
-_N_JOINTS = len(JOINT_NAMES)
+_JOINTS, _ORIENTATION, _ACCELERATION, _LEFT, _RIGHT = range(5)
+_KEPT_UPDATES = 1000
 
 
 class SensorIntake:
@@ -30,10 +31,8 @@ class SensorIntake:
         """Readings that were complete."""
         self.stamp_ns = 0
         """Of the newest one."""
-        self._stamps: list[int | None] = [None] * 4
-        self._joints = np.empty(3 * _N_JOINTS)
-        self._imu = np.empty(4), np.empty(3)
-        self._soles = np.empty((2, 3))
+        self._updates: dict[int, dict[int, Array]] = {}
+        """What has come of each update that is not complete, by its stamp [ns]."""
 
     def joint_states(self, message: Any) -> None:
         """Take in a sensor_msgs/JointState; what it lacks is NaN."""
@@ -42,29 +41,40 @@ class SensorIntake:
             [_at(values, place.get(name, -1)) for name in JOINT_NAMES]
             for values in (message.position, message.velocity, message.effort)
         ]
-        self._joints = np.ravel(np.array(rows, dtype=np.float64))
-        self._arrived(_JOINTS, message)
+        self._arrived(message, {_JOINTS: np.ravel(np.array(rows, dtype=np.float64))})
 
     def imu(self, message: Any) -> None:
         """Take in a sensor_msgs/Imu."""
         q, a = message.orientation, message.linear_acceleration
-        self._imu = np.array([q.x, q.y, q.z, q.w]), np.array([a.x, a.y, a.z])
-        self._arrived(_IMU, message)
+        orientation = np.array([q.x, q.y, q.z, q.w])
+        acceleration = np.array([a.x, a.y, a.z])
+        self._arrived(message, {_ORIENTATION: orientation, _ACCELERATION: acceleration})
 
     def sole(self, side: int, message: Any) -> None:
         """Take in a geometry_msgs/WrenchStamped: side 0 left, 1 right."""
         wrench = message.wrench
-        soles: Array = self._soles.copy()
-        soles[side] = wrench.force.z, wrench.torque.x, wrench.torque.y
-        self._soles = soles
-        self._arrived((_LEFT, _RIGHT)[side], message)
+        values = np.array([wrench.force.z, wrench.torque.x, wrench.torque.y])
+        self._arrived(message, {(_LEFT, _RIGHT)[side]: values})
 
-    def _arrived(self, topic: int, message: Any) -> None:
-        self._stamps[topic] = stamp_ns = nanoseconds(message.header.stamp)
-        if stamp_ns >= 0 and len(set(self._stamps)) == 1:
-            self.newest = SensorReading(self._joints, *self._imu, self._soles)
+    def _arrived(self, message: Any, values: dict[int, Array]) -> None:
+        stamp_ns = nanoseconds(message.header.stamp)
+        if stamp_ns < 0:
+            return
+        parts = self._updates.setdefault(stamp_ns, {})
+        parts |= values
+        if len(parts) == 5:
+            soles = np.array([parts[_LEFT], parts[_RIGHT]])
+            self.newest = SensorReading(
+                parts[_JOINTS], parts[_ORIENTATION], parts[_ACCELERATION], soles
+            )
             self.stamp_ns = stamp_ns
             self.complete += 1
+            # A topic keeps its order: what is not complete by now never will be.
+            self._updates = {
+                at: begun for at, begun in self._updates.items() if at > stamp_ns
+            }
+        elif len(self._updates) > _KEPT_UPDATES:
+            del self._updates[min(self._updates)]
 
 
 def _at(values: Any, place: int) -> float:

@@ -76,6 +76,14 @@ def test_a_servo_that_an_engine_has_not_is_refused_in_one_line(biped):
     )
 
 
+@pytest.mark.parametrize("verb", [("walk", "--static"), ("learn", "--out", "run")])
+def test_a_real_robot_is_walked_by_nodes_only(biped, verb):
+    robot = ("sim.engine=robot", "sim.observations=sensors")
+    outcome = biped(*verb, *(word for each in robot for word in ("--set", each)))
+    assert outcome.status == 2
+    assert "a real one is walked by `biped up`" in outcome.err.splitlines()[-1]
+
+
 def test_an_unknown_engine_is_refused_with_those_there_are(biped):
     outcome = biped("check", "--set", "sim.engine=bullet")
     assert outcome.status == 2

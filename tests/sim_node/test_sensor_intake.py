@@ -1,6 +1,7 @@
 """Readings out of messages that come in any order, or incomplete."""
 
 import math
+from functools import partial
 
 import pytest
 from builtin_interfaces.msg import Time
@@ -63,6 +64,30 @@ def test_messages_of_two_updates_make_no_reading():
     assert intake.complete == 0
     all_but_joints(intake, 4)
     assert intake.complete == 1
+
+
+def test_no_reading_is_lost_where_one_topic_is_ahead_of_another():
+    intake = SensorIntake()
+    for at in (2, 4, 6):
+        intake.joint_states(joints(at))
+    stamps = []
+    for at in (2, 4, 6):
+        all_but_joints(intake, at)
+        stamps.append((intake.complete, intake.stamp_ns))
+    assert stamps == [(1, 2), (2, 4), (3, 6)]
+
+
+def test_an_update_before_time_0_makes_no_reading():
+    intake = SensorIntake()
+    for message, take in (
+        (joints(2), intake.joint_states),
+        (imu(2), intake.imu),
+        (sole(2, 1.0), partial(intake.sole, 0)),
+        (sole(2, 1.0), partial(intake.sole, 1)),
+    ):
+        message.header.stamp.sec = -1
+        take(message)
+    assert intake.complete == 0
 
 
 def test_joints_are_found_by_their_names():

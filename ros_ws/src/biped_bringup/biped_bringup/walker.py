@@ -57,13 +57,7 @@ class Walker:
             settings: of the whole run.
             rng: source of the disturbances.
             on_tick: called after every control tick.
-
-        Raises:
-            SettingsError: the robot is a real one, which nodes walk.
         """
-        if settings.sim.engine == ROBOT:
-            problem = "must be a simulated one here; a real one is walked by `biped up`"
-            raise SettingsError("sim.engine", ROBOT, problem)
         robot = Robot(settings.robot)
         self.reference = WaistReference(robot, settings.gait, settings.correction)
         self.biped = SimulatedBiped(
@@ -78,7 +72,14 @@ class Walker:
         return self.reference.ticks
 
     def walk(self, responder: Responder) -> EpisodeResult:
-        """Walk until the responder gives a result."""
+        """Walk until the responder gives a result.
+
+        Raises:
+            SettingsError: the robot is a real one, which nodes walk.
+        """
+        if self.biped.settings.engine == ROBOT:
+            problem = "must be a simulated one here; a real one is walked by `biped up`"
+            raise SettingsError("sim.engine", ROBOT, problem)
         self._walks += 1
         self.reference.reset()
         answer = responder.respond(self.biped.begin_walk(self._walks))
