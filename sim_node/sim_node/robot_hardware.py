@@ -76,8 +76,6 @@ _LATE_TICKS = 2 * TICKS_PER_LEARNING_TICK
 """From a reading until what answers it has to be sent."""
 _AS_SENT_TICKS = 3 * TICKS_PER_LEARNING_TICK
 """From a reading until what answers it changes anything."""
-_OVER_TICKS = 2 * TICKS_PER_LEARNING_TICK
-"""From what was sent before to what was sent last."""
 _GOES_ON_TICKS = TICKS_PER_LEARNING_TICK
 """Until it is asked to stay: readings are of the past, and joints do not jump back."""
 # What standing is: each sole's share of the weight, and how far a joint may be off.
@@ -291,14 +289,15 @@ class RobotHardware(Hardware):
     def _led_over(self, positions: Array) -> Array:
         """Return (ticks, 12) positions that begin with what was sent before, if any."""
         begun, sent = self._sent
-        known = sent[self._tick - begun :]
-        ticks = _AS_SENT_TICKS + _OVER_TICKS
-        if min(len(known), len(positions)) < ticks:
+        known = sent[self._tick - begun :][: len(positions)]
+        n = len(known)
+        if n <= _AS_SENT_TICKS:
             return positions
-        s = (np.arange(1, ticks + 1) - _AS_SENT_TICKS).clip(min=0) / _OVER_TICKS
+        over = np.arange(1, n + 1) - _AS_SENT_TICKS
+        s = over.clip(min=0) / (n - _AS_SENT_TICKS)
         share = (s**2 * (3.0 - 2.0 * s))[:, None]
-        start = known[:ticks] + share * (positions[:ticks] - known[:ticks])
-        return np.vstack([start, positions[ticks:]])
+        start = known + share * (positions[:n] - known)
+        return np.vstack([start, positions[n:]])
 
     def _send(self, tick: int, positions: Array) -> None:
         """Have the joints follow (ticks, 12) positions from after a tick on."""
