@@ -16,9 +16,9 @@ What failures do:
     the emergency stop is pressed, if only for a moment: the joints are asked to stay
         at once, the walk ends, and whoever has asked for one has to ask again. What the
         motors do at an emergency stop, and without commands, is the robot's own matter.
-    the sensors read what is no number; a segment comes more than two learning ticks
-        after the reading that it answers; the walk is ended by whoever guides it: it
-        ends, and the joints are asked to stay.
+    the sensors read what is no number; a segment comes more than 30 ms after the
+        reading that it answers; the walk is ended by whoever guides it: it ends, and
+        the joints are asked to stay.
     the sensors are silent for longer than the time-out: the walk ends. Nobody knows any
         more where the joints are to stay; they come to rest where the look-ahead ends.
     the robot does not stand when the walk is to begin: no walk.
@@ -72,9 +72,9 @@ _ASKED_S = 10.0
 _TO_STANCE_TICKS = control_ticks(2.0)
 _STANDING_TICKS = control_ticks(0.5)
 _LOOK_AHEAD_TICKS = 50
-_LATE_TICKS = 2 * TICKS_PER_LEARNING_TICK
+_LATE_TICKS = control_ticks(0.03)
 """From a reading until what answers it has to be sent."""
-_AS_SENT_TICKS = 3 * TICKS_PER_LEARNING_TICK
+_AS_SENT_TICKS = control_ticks(0.04)
 """From a reading until what answers it changes anything."""
 _GOES_ON_TICKS = TICKS_PER_LEARNING_TICK
 """Until it is asked to stay: readings are of the past, and joints do not jump back."""
