@@ -208,6 +208,16 @@ def assert_asked_to_stay(person):
     assert asked[0].tolist() == list(segment[-1].positions)
 
 
+def assert_no_step(asked):
+    """Each begins with what was asked before, and comes to something else."""
+    rows = [np.array([point.positions for point in each.points]) for each in asked]
+    assert len(rows) == 30
+    for before, after in itertools.pairwise(rows):
+        known = before[TICKS_PER_LEARNING_TICK:]
+        assert np.array_equal(known[:20], after[:20])
+        assert 0.0 < np.abs(known - after[: len(known)]).max() < 1e-3
+
+
 @pytest.mark.parametrize("hardware", [IN_ITS_OWN_TIME], indirect=True)
 def test_a_robot_that_keeps_its_own_time_is_followed_tick_by_tick(
     new_biped, hardware, person
@@ -217,14 +227,20 @@ def test_a_robot_that_keeps_its_own_time_is_followed_tick_by_tick(
         # Segments as nodes send them, with look-ahead.
         reference = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings(), 50)
         observation = begin(biped, person, number)
-        while observation.end_cause is None and observation.control_tick < 300:
-            observation = biped.execute(reference.segment(np.zeros(2)))
+        person.last_asked()
+        person.asked.clear()
+        for sway in itertools.cycle((0.024, -0.024)):
+            if observation.end_cause is not None or observation.control_tick == 300:
+                break
+            observation = biped.execute(reference.segment(np.array([0.0, sway])))
             time.sleep(0.01)  # the robot walks on
         if observation.end_cause is not EndCause.LATE:
             break
     assert (observation.control_tick, observation.end_cause) == (300, None)
     assert observation.worst_zmp_error_m < 0.03
     assert biped.world.waist().position[2] == pytest.approx(0.475, abs=0.002)
+    person.last_asked()
+    assert_no_step(person.asked)
 
     time.sleep(0.5)  # for longer than a segment may take
     observation = biped.execute(reference.segment(np.zeros(2)))
