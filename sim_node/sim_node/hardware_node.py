@@ -14,7 +14,6 @@ import time
 from typing import Any
 
 import numpy as np
-from rclpy.time import Time
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory
 
