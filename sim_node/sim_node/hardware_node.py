@@ -147,9 +147,8 @@ class HardwareNode(GuardedNode):
 
     def _on_trajectory(self, message: JointTrajectory) -> None:
         if self._lockstep:
-            message.header.stamp = (
-                Time().to_msg()
-            )  # time has stood still: it begins now
+            # Time has stood still for the robot: it begins now.
+            message.header.stamp.sec = message.header.stamp.nanosec = 0
         now_ns = self._ticks * CONTROL_PERIOD_NS
         try:
             self._trajectory = FollowedTrajectory(message, now_ns, self._position)
