@@ -7,10 +7,7 @@ itself.
 
 The robot keeps the time: control ticks are counted by the stamps of its readings. It
 is sent each segment with its look-ahead, stamped with the reading that the segment
-answers, and walks on along the look-ahead until the next one comes. A micrometre
-between the two, taken in one tick of 2 ms, is 0.25 m/s^2, and 12 mm of ZMP: so each
-segment leaves what was sent before only when the robot has surely got it, and
-gradually. Until then it makes no difference when it comes.
+answers, and walks on along the look-ahead until the next one comes.
 
 What failures do:
     the emergency stop is pressed, if only for a moment: the joints are asked to stay
@@ -61,6 +58,7 @@ from sim_node.physics import Array, Vector
 from sim_node.sensed_world import Hardware
 from sim_node.sensor_intake import SensorIntake
 from sim_node.sensors import SensorReading
+from sim_node.sent_trajectory import SentTrajectory
 
 NAME = "robot_hardware"
 _TURN_S = 0.2
@@ -74,10 +72,6 @@ _STANDING_TICKS = control_ticks(0.5)
 _LOOK_AHEAD_TICKS = 50
 _LATE_TICKS = control_ticks(0.03)
 """From a reading until what answers it has to be sent."""
-_AS_SENT_TICKS = control_ticks(0.04)
-"""From a reading until what answers it changes anything."""
-_GOES_ON_TICKS = TICKS_PER_LEARNING_TICK
-"""Until it is asked to stay: readings are of the past, and joints do not jump back."""
 # What standing is: each sole's share of the weight, and how far a joint may be off.
 _SHARE = 0.2
 _OFF_RAD = 0.05
@@ -116,8 +110,7 @@ class RobotHardware(Hardware):
         """Stamp that ticks are counted from; None: that of the next segment."""
         self._tick = 0
         """Control ticks walked since then."""
-        self._sent: tuple[int, Array] = 0, np.empty((0, 0))
-        """What was sent last: the tick that it begins at, and (ticks, 12) positions."""
+        self._sent = SentTrajectory()
         self._late = False
         self._context: Any = None
 
@@ -143,12 +136,11 @@ class RobotHardware(Hardware):
         with self._changed:
             if self._origin_ns is None:
                 self._origin_ns, self._tick = self._intake.stamp_ns, 0
-                self._sent = 0, positions[:0]
+                self._sent.forget()
             ahead = self._tick_of(self._intake.stamp_ns) - self._tick
             self._late = ahead > _LATE_TICKS
             if not (self._late or self._stopped):
-                self._sent = self._tick, self._led_over(positions)
-                self._send(*self._sent)
+                self._send(self._tick, self._sent.next(self._tick, positions))
 
     def exchange(self, q: Array, dq: Array) -> SensorReading:
         """Wait for the readings after the next control tick of what was planned.
@@ -286,19 +278,6 @@ class RobotHardware(Hardware):
         self._origin_ns = None
         return readings[-_STANDING_TICKS:]
 
-    def _led_over(self, positions: Array) -> Array:
-        """Return (ticks, 12) positions that begin with what was sent before, if any."""
-        begun, sent = self._sent
-        known = sent[self._tick - begun :][: len(positions)]
-        n = len(known)
-        if n <= _AS_SENT_TICKS:
-            return positions
-        over = np.arange(1, n + 1) - _AS_SENT_TICKS
-        s = over.clip(min=0) / (n - _AS_SENT_TICKS)
-        share = (s**2 * (3.0 - 2.0 * s))[:, None]
-        start = known + share * (positions[:n] - known)
-        return np.vstack([start, positions[n:]])
-
     def _send(self, tick: int, positions: Array) -> None:
         """Have the joints follow (ticks, 12) positions from after a tick on."""
         stamp_ns = (self._origin_ns or 0) + tick * CONTROL_PERIOD_NS
@@ -314,17 +293,12 @@ class RobotHardware(Hardware):
         self._commands.publish(message)
 
     def _hold(self) -> None:
-        """Have the joints stay where they are asked to be in a moment, if they move.
-
-        For a while: a controller refuses a trajectory that has ended when it comes.
-        """
-        begun, positions = self._sent
-        if self._under_way and len(positions) > 0:
+        """Have the joints stay where they are asked to be in a moment, if they move."""
+        if self._under_way:
             now = self._tick_of(self._intake.stamp_ns)
-            rows = now - begun + np.arange(_LOOK_AHEAD_TICKS)
-            last = min(now - begun + _GOES_ON_TICKS, len(positions)) - 1
-            self._send(now, positions[rows.clip(0, max(last, 0))])
-            self._sent = begun, positions[:0]
+            staying = self._sent.stay(now)
+            if staying is not None:
+                self._send(now, staying)
 
     def _tick_of(self, stamp_ns: int) -> int:
         """Return the control tick, since a walk's first, that a stamp belongs to."""

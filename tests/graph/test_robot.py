@@ -14,7 +14,7 @@ import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import Bool
-from std_srvs.srv import Trigger
+from std_srvs.srv import SetBool, Trigger
 from tests.conftest import COMMAND
 from tests.robots import SHIPPED
 from trajectory_msgs.msg import JointTrajectory
@@ -26,6 +26,7 @@ from biped_description.robot import Robot
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from sim_node.biped import SimulatedBiped
+from sim_node.errors import SnapshotError
 from sim_node.settings import SensorSettings, SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
@@ -52,10 +53,10 @@ class Person:
         name = topics.HARDWARE_COMMANDS.name
         self.node.create_subscription(JointTrajectory, name, self.asked.append, 1000)
 
-    def call(self, service):
-        client = self.node.create_client(Trigger, service)
+    def call(self, service, kind=Trigger, **request):
+        client = self.node.create_client(kind, service)
         assert client.wait_for_service(TIMEOUT_S)
-        future = client.call_async(Trigger.Request())
+        future = client.call_async(kind.Request(**request))
         self.executor.spin_until_future_complete(future, TIMEOUT_S)
         return future.result()
 
@@ -158,6 +159,8 @@ def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
 
     refused = person.call("/robot_hardware/begin")
     assert (refused.success, refused.message) == (False, "a walk is under way")
+    with pytest.raises(SnapshotError):
+        biped.snapshot()
     person.press(True)  # between two segments, and let go before the next one
     assert_asked_to_stay(person)
     refused = person.call("/robot_hardware/begin")
@@ -182,6 +185,18 @@ def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
     assert biped.execute(next(static)).end_cause is None
     hardware.kill()
     assert biped.execute(next(static)).end_cause is EndCause.SENSORS_SILENT
+
+
+def test_a_walk_that_was_asked_for_is_not_begun_much_later(
+    new_biped, hardware, person, monkeypatch
+):
+    monkeypatch.setattr("sim_node.robot_hardware._ASKED_S", 0.5)
+    robot = new_biped(SHIPPED).world.hardware
+    assert not robot.ready()
+    person.have_it_walk()
+    end = time.monotonic() + TIMEOUT_S
+    while robot.ready():
+        assert time.monotonic() < end
 
 
 def test_who_has_asked_for_a_walk_asks_again_after_an_emergency_stop(
@@ -269,6 +284,7 @@ def test_the_learned_walk_holds_on_the_graph(domain, tmp_path, hardware, person)
     )
     try:
         person.have_it_walk()
+        assert not person.call("/sim_node/pause", SetBool, data=True).success
         out, _ = up.communicate(timeout=10 * TIMEOUT_S)
     finally:
         up.kill()

@@ -9,6 +9,7 @@ from biped_common.settings import SettingsError, from_mapping, to_mapping
 from biped_description.settings import RobotSettings
 from sim_node.settings import (
     DisturbanceSettings,
+    HardwareNodeSettings,
     LimitSettings,
     SimNodeSettings,
     SimSettings,
@@ -93,6 +94,16 @@ def test_settings_of_the_node_out_of_range_are_refused(name, value):
 def test_a_setting_made_in_code_has_the_right_type(value):
     with pytest.raises(SettingsError, match=r"^friction = .*: must be a number"):
         DisturbanceSettings(friction=value)
+
+
+@pytest.mark.parametrize("name", ["mass_error", "push_force_n", "zmp_noise_m"])
+def test_a_robot_that_is_played_refuses_what_has_no_effect_on_it(name):
+    sim = SimSettings(disturbances=DisturbanceSettings(**{name: 0.1}))
+    message = rf"^sim\.disturbances\.{name} = 0.1: must be 0.0: it has no effect"
+    with pytest.raises(SettingsError, match=message):
+        HardwareNodeSettings(sim=sim)
+    slippery = SimSettings(disturbances=DisturbanceSettings(friction=0.5))
+    assert HardwareNodeSettings(sim=slippery).sim.disturbances.friction == 0.5
 
 
 def test_a_robot_that_keeps_its_own_time_takes_no_other_pace():

@@ -5,10 +5,10 @@
 Learns the walk from the truth, from sensors with noise and one tick of delay, and from
 these under a limit that is 3 mm stricter, on the same seeds; then walks what was
 learned, frozen, with ever worse sensors and the limit as it is by default, some walks
-per seed, each with noise of its own. Prints a table in Markdown. Of the
-walks whose learning came to its end: how many were completed; in how many of these the
-true ZMP stayed within the limit, which the robot judges by its sensors; median and
-largest of its worst errors; and how many walks of each seed were completed.
+per seed, each with noise of its own. Prints a table in Markdown. Of the walks whose
+learning came to its end: how many were completed; in how many of these the true ZMP
+stayed within the limit, which the robot judges by its sensors; median and largest of
+its worst errors; and how many walks of each seed were completed.
 """
 
 from __future__ import annotations
