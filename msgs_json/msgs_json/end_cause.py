@@ -15,8 +15,8 @@ class EndCause(str, Enum):
     from outside: in real time, a reference was not there when it was due, so that
     nobody knows what the walk would have been; who guides the robot fell silent; a user
     asked for it; a stranger published what only one node may; a robot's sensors fell
-    silent, or read what cannot be; somebody pressed the emergency stop; or it did not
-    stand when its walk was to begin.
+    silent, or read what cannot be; somebody pressed the emergency stop; it did not
+    stand when its walk was to begin; or its joints are not where they were asked to be.
 
     Memory files know a cause by its place in this order: new ones come last.
     """
@@ -39,6 +39,7 @@ class EndCause(str, Enum):
     EMERGENCY_STOP = "emergency_stop"
     NOT_STANDING = "not_standing"
     TILT = "tilt"
+    NOT_FOLLOWING = "not_following"
 
     @property
     def from_outside(self) -> bool:
@@ -60,5 +61,6 @@ _FROM_OUTSIDE = frozenset(
         EndCause.SENSORS_INVALID,
         EndCause.EMERGENCY_STOP,
         EndCause.NOT_STANDING,
+        EndCause.NOT_FOLLOWING,
     )
 )

@@ -35,7 +35,7 @@ def make_plant(
     if settings.engine == ROBOT:
         # Loaded only where it is wanted: nothing else here needs ROS.
         module = importlib.import_module("sim_node.robot_hardware")
-        real: Hardware = module.RobotHardware(robot, sensors.timeout_s)
+        real: Hardware = module.RobotHardware(robot, sensors)
         return SensedWorld(robot, real, sensors.tilt_limit_rad)
     friction, servo = settings.disturbances.friction, settings.servo
     plant = plant_of(settings.engine)(robot, friction, torque_limits_nm, servo)

@@ -13,9 +13,9 @@ What failures do:
     the emergency stop is pressed, if only for a moment: the joints are asked to stay
         at once, the walk ends, and whoever has asked for one has to ask again. What the
         motors do at an emergency stop, and without commands, is the robot's own matter.
-    the sensors read what is no number; a segment comes more than 30 ms after the
-        reading that it answers; the walk is ended by whoever guides it: it ends, and
-        the joints are asked to stay.
+    the sensors read what is no number; a joint is not where it was asked to be; a
+        segment comes more than 30 ms after the reading that it answers; the walk is
+        ended by whoever guides it: it ends, and the joints are asked to stay.
     the sensors are silent for longer than the time-out: the walk ends. Nobody knows any
         more where the joints are to stay; they come to rest where the look-ahead ends.
     the robot does not stand when the walk is to begin: no walk.
@@ -59,6 +59,7 @@ from sim_node.sensed_world import Hardware
 from sim_node.sensor_intake import SensorIntake
 from sim_node.sensors import SensorReading
 from sim_node.sent_trajectory import SentTrajectory
+from sim_node.settings import SensorSettings
 
 NAME = "robot_hardware"
 _TURN_S = 0.2
@@ -72,9 +73,8 @@ _STANDING_TICKS = control_ticks(0.5)
 _LOOK_AHEAD_TICKS = 50
 _LATE_TICKS = control_ticks(0.03)
 """From a reading until what answers it has to be sent."""
-# What standing is: each sole's share of the weight, and how far a joint may be off.
 _SHARE = 0.2
-_OFF_RAD = 0.05
+"""Of the weight, on each sole of a robot that stands."""
 _STANDING = 0
 _KEPT_READINGS = 500
 
@@ -82,15 +82,15 @@ _KEPT_READINGS = 500
 class RobotHardware(Hardware):
     """See `Hardware`. Joins the graph when it is asked for the first time."""
 
-    def __init__(self, robot: Robot, timeout_s: float) -> None:
+    def __init__(self, robot: Robot, limits: SensorSettings) -> None:
         """Take note of the robot.
 
         Args:
             robot: as it is planned with.
-            timeout_s: silence of the sensors that ends a walk.
+            limits: silence and joint errors that end a walk; noise is the robot's own.
         """
         self._weight_n = robot.mass_kg * GRAVITY_M_S2
-        self._timeout_s = timeout_s
+        self._limits = limits
         self._stance = np.empty(0)
         self._intake = SensorIntake()
         self._changed = threading.Condition()
@@ -146,8 +146,8 @@ class RobotHardware(Hardware):
         """Wait for the readings after the next control tick of what was planned.
 
         Raises:
-            PlantStoppedError: they do not come, the plan came late, or the emergency
-                stop is pressed.
+            PlantStoppedError: they do not come, or tell of joints that do not follow;
+                the plan came late; or the emergency stop is pressed.
         """
         del dq
         if not self._walked:
@@ -155,7 +155,7 @@ class RobotHardware(Hardware):
         self._tick += 1
         with self._changed:
             self._changed.wait_for(
-                lambda: self._stopped or self._arrived(), self._timeout_s
+                lambda: self._stopped or self._arrived(), self._limits.timeout_s
             )
             if self._stopped:
                 cause = EndCause.EMERGENCY_STOP
@@ -165,6 +165,8 @@ class RobotHardware(Hardware):
                 cause = EndCause.SENSORS_SILENT
             elif not self._readings[0][1].usable:
                 cause = EndCause.SENSORS_INVALID
+            elif not self._follows(*self._readings[0]):
+                cause = EndCause.NOT_FOLLOWING
             else:
                 return self._readings[0][1]
             if cause is not EndCause.SENSORS_SILENT:
@@ -213,11 +215,7 @@ class RobotHardware(Hardware):
             self._asked_s, self._under_way, self._stopped = None, True, False
         self._walked = True
         stood = self._go_to_stance(self._newest().joints[: len(self._stance)])
-        last = stood[-1]
-        off_rad = abs(last.joints[: len(self._stance)] - self._stance).max()
-        if not (
-            off_rad < _OFF_RAD and last.soles[:, 0].min() > _SHARE * self._weight_n
-        ):
+        if not stood[-1].soles[:, 0].min() > _SHARE * self._weight_n:
             self.stop()
             raise PlantStoppedError(EndCause.NOT_STANDING)
         return stood
@@ -313,6 +311,14 @@ class RobotHardware(Hardware):
         while readings and self._tick_of(readings[0][0]) < self._tick:
             readings.popleft()
         return bool(readings)
+
+    def _follows(self, stamp_ns: int, reading: SensorReading) -> bool:
+        """Return whether all joints were read near where they had been asked to be."""
+        asked = self._sent.asked(self._tick_of(stamp_ns))
+        if asked is None:
+            return True
+        off_rad = abs(reading.joints[: len(asked)] - asked).max()
+        return bool(off_rad < self._limits.following_limit_rad)
 
     def _taken_to_stand(self, q: Array) -> SensorReading:
         half = [0.5 * self._weight_n, 0.0, 0.0]

@@ -52,6 +52,20 @@ class SentTrajectory:
         self._tick, self._positions = tick, positions
         return positions
 
+    def asked(self, tick: int) -> Array | None:
+        """Return (12,) positions that the joints are asked to be at after a tick [rad].
+
+        None before anything was sent. Behind its end, a trajectory stays where it led.
+
+        Args:
+            tick: not before the newest trajectory was sent.
+        """
+        positions = self._positions
+        if len(positions) == 0:
+            return None
+        after: Array = positions[max(0, min(tick - self._tick, len(positions)) - 1)]
+        return after
+
     def stay(self, tick: int) -> Array | None:
         """Return (ticks, 12) positions that come to rest at once, None if at rest.
 

@@ -126,6 +126,13 @@ class SensorSettings(Settings):
     timeout_s: float = setting(
         0.05, "s", "silence of a real robot's sensors at which a walk ends", above=0.0
     )
+    following_limit_rad: float = setting(
+        0.05,
+        "rad",
+        "from a real robot's joint to where it was asked to be, at which a walk ends",
+        above=0.0,
+        upper=1.5,
+    )
 
     @property
     def noisy(self) -> bool:

@@ -27,13 +27,14 @@ from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from sim_node.biped import SimulatedBiped
 from sim_node.errors import SnapshotError
-from sim_node.settings import SensorSettings, SimSettings
+from sim_node.settings import LimitSettings, SensorSettings, SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
 
 TIMEOUT_S = 120.0
 LOCKSTEP = ("pace:=lockstep",)
 IN_ITS_OWN_TIME = ("pace:=realtime", "realtime_factor:=0.25")
+SERVOS_THAT_LAG = (*LOCKSTEP, "sim.servo.kind:=lag", "sim.servo.bandwidth_hz:=2.0")
 SENSED = "sim.observations=sensors"
 
 
@@ -113,15 +114,18 @@ def hardware(domain, request):
 @pytest.fixture
 def new_biped(domain, monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    settings = SimSettings(
-        engine="robot",
-        observations="sensors",
-        sensors=SensorSettings(timeout_s=3.0),
-    )
     stance = WaistReference(SHIPPED, GaitSettings(), CorrectionSettings()).stance()
     made = []
 
-    def make(robot):
+    def make(robot, following_limit_rad=0.05, zmp_limit_m=0.065):
+        settings = SimSettings(
+            engine="robot",
+            observations="sensors",
+            limits=LimitSettings(zmp_error_m=zmp_limit_m),
+            sensors=SensorSettings(
+                timeout_s=3.0, following_limit_rad=following_limit_rad
+            ),
+        )
         made.append(SimulatedBiped(robot, settings, stance, np.random.default_rng(0)))
         return made[-1]
 
@@ -266,6 +270,23 @@ def test_a_robot_that_does_not_stand_does_not_walk(new_biped, hardware, person):
     # By its table it weighs far more than the soles feel: somebody holds it up.
     biped = new_biped(Robot(replace(SHIPPED.settings, torso_mass_kg=100.0)))
     assert begin(biped, person, 1).end_cause is EndCause.NOT_STANDING
+
+
+@pytest.mark.parametrize("hardware", [SERVOS_THAT_LAG], indirect=True)
+def test_a_robot_that_does_not_do_what_it_is_sent_is_stopped(
+    new_biped, hardware, person
+):
+    biped = new_biped(SHIPPED, following_limit_rad=0.02, zmp_limit_m=1.0)
+    observation = begin(biped, person, 1)
+    static = segments()
+    while observation.end_cause is None:
+        observation = biped.execute(next(static))
+    assert observation.end_cause is EndCause.NOT_FOLLOWING
+    # It stood well, and was in motion when its joints were too far behind.
+    assert 500 < observation.control_tick < 1000
+    asked = person.last_asked()
+    assert len(asked) == 50
+    assert np.ptp(asked[TICKS_PER_LEARNING_TICK:], axis=0).max() == 0.0
 
 
 @pytest.mark.thorough

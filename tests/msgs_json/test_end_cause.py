@@ -26,6 +26,7 @@ def test_these_are_all_the_words():
         "emergency_stop",
         "not_standing",
         "tilt",
+        "not_following",
     ]
 
 
@@ -39,6 +40,7 @@ def test_these_come_from_outside():
         "sensors_invalid",
         "emergency_stop",
         "not_standing",
+        "not_following",
     }
 
 

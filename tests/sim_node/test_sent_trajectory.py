@@ -78,3 +78,13 @@ def test_joints_go_on_for_a_moment_and_stay(tick):
 
 def test_who_was_sent_nothing_stays_anyway():
     assert SentTrajectory().stay(0) is None
+
+
+@pytest.mark.parametrize(
+    ("tick", "row"), [(0, 0), (1, 0), (2, 1), (LENGTH, -1), (LENGTH + 9, -1)]
+)
+def test_where_the_joints_are_asked_to_be_after_a_tick(tick, row):
+    sent = SentTrajectory()
+    assert sent.asked(tick) is None
+    sent.next(0, way())
+    assert np.array_equal(sent.asked(tick), way()[row])

@@ -164,6 +164,14 @@ def _not_standing(_: WalkRecord, __: RunSettings) -> str:
     )
 
 
+def _not_following(record: WalkRecord, settings: RunSettings) -> str:
+    return (
+        f"A joint was off by {settings.sim.sensors.following_limit_rad:g} rad or more "
+        f"{_when(record)}, {_where(record)}, and the walk was given up: the robot did "
+        "not do what it was sent. Neither robot nor learner had failed to walk."
+    )
+
+
 def _tilt(record: WalkRecord, settings: RunSettings) -> str:
     return (
         f"The torso tilted by more than {settings.sim.sensors.tilt_limit_rad:g} rad "
@@ -190,6 +198,7 @@ _SENTENCES: Mapping[EndCause, Callable[[WalkRecord, RunSettings], str]] = {
     EndCause.EMERGENCY_STOP: _emergency_stop,
     EndCause.NOT_STANDING: _not_standing,
     EndCause.TILT: _tilt,
+    EndCause.NOT_FOLLOWING: _not_following,
 }
 
 
