@@ -213,6 +213,7 @@ class RobotHardware(Hardware):
                 self._node.get_logger().info(f"waiting for a call of /{NAME}/begin")
             self._changed.wait_for(self._asked)
             self._asked_s, self._under_way, self._stopped = None, True, False
+            self._sent.forget()  # a stop must not lead to where the last walk ended
         self._walked = True
         stood = self._go_to_stance(self._newest().joints[: len(self._stance)])
         if not stood[-1].soles[:, 0].min() > _SHARE * self._weight_n:

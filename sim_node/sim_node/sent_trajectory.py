@@ -16,6 +16,8 @@ from sim_node.physics import Array
 
 AS_BEFORE_TICKS = control_ticks(0.04)
 """From a reading until what answers it changes anything."""
+LEAST_LOOK_AHEAD_TICKS = control_ticks(0.1)
+"""What leaves a change 30 ms and more to come about, where segments are on time."""
 GOES_ON_TICKS = control_ticks(0.02)
 """Until joints that are to stay do: the newest reading is of the past."""
 STAYS_TICKS = control_ticks(0.1)

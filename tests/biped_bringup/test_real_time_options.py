@@ -49,6 +49,10 @@ def test_pace_and_look_ahead_go_where_they_belong():
         ("--nice -21", "--nice -21: must be between -20 and 19"),
         ("--cores=-1", "--cores (-1,): must be at least 0"),
         ("--look-ahead 601", "--look-ahead 601: must be between 1 and 600"),
+        (
+            "--set sim.engine=robot --set sim.observations=sensors --look-ahead 49",
+            "--look-ahead 49: must be 50 or more with sim.engine = robot",
+        ),
         ("--factor 0", "--factor 0.0: must be above 0.0"),
         ("--factor nan", "--factor nan: must be a finite number"),
         ("--cores a", "--cores: a: must be whole numbers, as in 0,1"),

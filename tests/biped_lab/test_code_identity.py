@@ -83,3 +83,24 @@ def test_versions_of_other_packages_are_told(before: str) -> None:
     assert f"'numpy': '{numpy.__version__}'" in before
     assert "'python': '" in before
     assert "scipy" not in before  # not imported
+
+
+def test_the_code_of_a_learner_from_elsewhere_counts(tmp_path: Path) -> None:
+    ask = (
+        "import sys; sys.path.insert(0, sys.argv[1]); "
+        "from biped_lab.code_identity import code_identity; "
+        "print(code_identity('biped_bringup.training', 'their_learner.agent'))"
+    )
+    package = tmp_path / "their_learner"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "agent.py").write_text("from their_learner import rule\n")
+    said = []
+    for gain in (1.0, 2.0):
+        (package / "rule.py").write_text(f"GAIN = {gain}\n")
+        done = subprocess.run(
+            [sys.executable, "-B", "-c", ask, str(tmp_path)],
+            capture_output=True, text=True, check=True, env=os.environ,
+        )  # fmt: skip
+        said.append(done.stdout)
+    assert said[0] != said[1]

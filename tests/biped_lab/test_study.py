@@ -5,13 +5,14 @@ from typing import Any
 
 import pytest
 
+from biped_lab.results import plan_study, read_study
+from biped_lab.run_folder import END_FILE
 from biped_lab.study import (
     Study,
     StudyError,
     load_study,
     study_names,
     study_of,
-    with_first_seeds,
 )
 
 SMALL: dict[str, Any] = {
@@ -110,11 +111,49 @@ def test_the_reduced_study_is_a_part_of_the_whole() -> None:
     assert less.file.most_episodes == 5 != whole.file.most_episodes
 
 
-def test_a_sitting_is_the_first_seeds_of_the_whole_and_is_found_again_by_it() -> None:
-    whole = study_of("small", SMALL | {"seeds": {"first": 7, "count": 3}})
-    sitting = list(with_first_seeds(whole, 2).specs())
-    assert sitting == list(whole.specs())[: len(sitting)]
-    assert {spec.seed for _, spec in sitting} == {7, 8}
+def seeds_of(folder: Path) -> set[str]:
+    """Return those that are written down of the study `small`."""
+    return {seed for arm in read_study(folder, "small").arms for seed in arm.runs}
+
+
+def test_a_sitting_is_the_first_seeds_of_the_whole(tmp_path: Path) -> None:
+    whole = study_of("small", SMALL)
+    folders = plan_study(tmp_path, whole, first_seeds=2)
+    assert folders == plan_study(tmp_path, whole)[: len(folders)]
+    plan_study(tmp_path, whole, first_seeds=2)
+    assert seeds_of(tmp_path) == {"7", "8"}
+    assert read_study(tmp_path, "small").first_seeds == 2
+
+
+def test_a_smaller_sitting_forgets_no_run_that_has_ended(tmp_path: Path) -> None:
+    whole = study_of("small", SMALL)
+    for folder in plan_study(tmp_path, whole, first_seeds=2):
+        (folder / END_FILE).touch()
+    plan_study(tmp_path, whole, first_seeds=1)
+    assert seeds_of(tmp_path) == {"7", "8"}
+
+
+@pytest.mark.parametrize("name", ["runs", "slurm"])
+def test_a_study_is_not_named_as_a_folder_of_the_laboratory(name: str) -> None:
+    with pytest.raises(StudyError, match=f"study {name}: must have another name"):
+        study_of(name, SMALL)
+
+
+def test_a_study_may_be_like_a_file_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "one.yaml").write_text("like: other.yaml\ntitle: one\n")
+    (tmp_path / "other.yaml").write_text("like: rivals\nmost_episodes: 7\n")
+    study = load_study(str(tmp_path / "one.yaml"))
+    assert (study.file.title, study.file.most_episodes) == ("one", 7)
+    assert study.source == str(tmp_path / "one.yaml")
+
+
+def test_a_study_that_is_like_itself_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "one.yaml").write_text("like: other.yaml\n")
+    (tmp_path / "other.yaml").write_text("like: one.yaml\n")
+    with pytest.raises(
+        StudyError, match=r"is like itself: .*one\.yaml is like .*other"
+    ):
+        load_study(str(tmp_path / "one.yaml"))
 
 
 # -- studies that come with the laboratory ---------------------------------------------

@@ -3,6 +3,7 @@
 import itertools
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -26,7 +27,7 @@ from biped_description.robot import Robot
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from sim_node.biped import SimulatedBiped
-from sim_node.errors import SnapshotError
+from sim_node.errors import PlantStoppedError, SnapshotError
 from sim_node.settings import LimitSettings, SensorSettings, SimSettings
 from trajectory_node.settings import CorrectionSettings, GaitSettings
 from trajectory_node.waist_reference import WaistReference
@@ -189,6 +190,32 @@ def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
     assert biped.execute(next(static)).end_cause is None
     hardware.kill()
     assert biped.execute(next(static)).end_cause is EndCause.SENSORS_SILENT
+
+
+def test_a_stop_before_a_walk_leads_nowhere(new_biped, hardware, person):
+    """Not to where the walk before was led, from which somebody moved the robot."""
+    biped = new_biped(SHIPPED, zmp_limit_m=1e-4)
+    observation = begin(biped, person, 1)
+    static = segments()
+    while observation.end_cause is None:
+        observation = biped.execute(next(static))
+    assert observation.end_cause is EndCause.ZMP_ERROR
+    person.last_asked()
+    person.asked.clear()
+    hardware.send_signal(signal.SIGSTOP)  # no reading comes with which to begin
+    robot = biped.world.hardware
+    assert not robot.ready()
+    person.have_it_walk()
+    end = time.monotonic() + TIMEOUT_S
+    while not robot.ready():
+        assert time.monotonic() < end
+    with pytest.raises(PlantStoppedError, match="sensors_silent"):
+        robot.load(0)
+    person.press(True)
+    end = time.monotonic() + 1.0
+    while time.monotonic() < end:
+        person.executor.spin_once(0.05)
+    assert person.asked == []
 
 
 def test_a_walk_that_was_asked_for_is_not_begun_much_later(

@@ -4,9 +4,11 @@ A penalty says that something was wrong, and the paper blames the last decisions
 whatever they were. Where a failure has a direction and the alternatives of a component
 have an order, it says more: what pushes the same way at least as hard as that which
 failed would have failed, too. All alternatives of a component are judged by that, the
-chosen one and those that were not; those that push less count as tried without failing,
-so that a failure on the other side later sets them right. The one between both is found
-by halving, as it were, instead of by trying each N0 times.
+chosen one and those that were not; those that push less count as tried without failing.
+So one failure forbids a whole side, failures on the other side take that back, and what
+fails neither way is never blamed. It does not halve: failures of both sides weigh
+against each other, and in one state by itself the right alternative is found no sooner
+than without a direction. What is gained is that many states learn from each failure.
 """
 
 from __future__ import annotations

@@ -1,14 +1,12 @@
 """Directed blame: which alternatives a failure speaks against, and which it clears."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.learner_node.xol.lettered_states import index, new_agent, walk
+from tests.learner_node.xol.lettered_states import at, index, new_agent, walk
 
 from learner_node.xol import blame
 from learner_node.xol.agent import XolAgent
-from learner_node.xol.settings import XolSettings
 
 UP, DOWN, NOT = 1.0, -1.0, 0.0
 
@@ -128,21 +126,17 @@ def test_old_trials_are_forgotten_in_time():
     assert agent.rules.failures[k, 0, 0].tolist() == [2, 0, 0]
 
 
-@pytest.mark.parametrize("limit", range(1, 15))
-def test_the_alternative_that_fails_neither_way_is_found_by_halving(limit):
-    """A walk fails upwards from `limit` on, and downwards below it but one."""
-    learner = new_agent(n_alternatives=15, minimum_selections=1, failure_threshold=0.5)
-    settings: XolSettings = learner.settings
-    agent = XolAgent(
-        settings, learner.states.settings, learner.problem, np.random.default_rng(limit)
-    )
-    episodes = 0
-    while True:
-        episodes += 1
-        agent.begin_episode(np.array([0.0]))
+@given(st.integers(1, 13), st.integers(0, 2**32))
+def test_failures_on_two_sides_forbid_one_side_at_most(right, seed):
+    """A walk fails upwards above `right` and downwards below it."""
+    made = new_agent(n_alternatives=15, minimum_selections=1)
+    rng = np.random.default_rng(seed)
+    agent = XolAgent(made.settings, made.states.settings, made.problem, rng)
+    for _ in range(30):
+        agent.begin_episode(at("A"))
         (chosen,) = agent.choose().tolist()
-        if chosen == limit - 1:
-            break
-        agent.penalise(0, np.array([[UP if chosen >= limit else DOWN]]))
+        if chosen != right:
+            agent.penalise(0, np.array([[UP if chosen > right else DOWN]]))
         agent.finish_episode()
-        assert episodes < 30
+        sides = {np.sign(j - right) for j in forbidden(agent, "A")}
+        assert sides <= {1} or sides <= {-1}

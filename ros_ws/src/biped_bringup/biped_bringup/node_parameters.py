@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from biped_bringup.run_settings import RunSettings
-from biped_common.settings import to_mapping
+from biped_common.settings import SettingsError, to_mapping
 from biped_ros.parameters import flattened
 from biped_ros.processor import ProcessorSettings
 from learner_node.settings import LearnerNodeSettings
 from msgs_json import topics
-from sim_node.settings import SimNodeSettings
+from sim_node.sent_trajectory import LEAST_LOOK_AHEAD_TICKS
+from sim_node.settings import ROBOT, SimNodeSettings
 from trajectory_node.settings import TrajectorySettings
 
 
@@ -65,7 +66,17 @@ def node_parameters(
         realtime_factor: simulated seconds per second, in real time.
         look_ahead_ticks: control ticks of reference beyond a segment.
         processor: what each of the three asks of the machine; None: nothing.
+
+    Raises:
+        SettingsError: what each node would take does not go together.
     """
+    if settings.sim.engine == ROBOT and look_ahead_ticks < LEAST_LOOK_AHEAD_TICKS:
+        raise SettingsError(
+            "look_ahead_ticks",
+            look_ahead_ticks,
+            f"must be {LEAST_LOOK_AHEAD_TICKS} or more with sim.engine = {ROBOT}, "
+            "which is led over from one segment to the next within it",
+        )
     beside_learner = to_mapping(settings)
     del beside_learner["learner"]
     processor = processor or ProcessorSettings()

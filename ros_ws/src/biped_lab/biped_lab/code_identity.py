@@ -1,8 +1,9 @@
 """What code a run is made by: a hash that changes when a walk could.
 
-It covers the modules that are imported from a given one on, as far as they are the
-project's own: their syntax trees, without comments, docstrings and layout. The packages
-of others that these import count with their versions.
+It covers the modules that are imported from given ones on, as far as they are the
+project's own or of the given ones' packages, such as a user's learner: their syntax
+trees, without comments, docstrings and layout. The packages of others that these import
+count with their versions.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ class _Module(NamedTuple):
 @cache
 def code_identity(*modules: str) -> CodeIdentity:
     """Return the identity of some modules and all that they import."""
+    own = frozenset((*_OWN, *(name.partition(".")[0] for name in modules)))
     found: dict[str, str] = {}
     others: set[str] = set()
     pending = list(modules)
@@ -51,10 +53,10 @@ def code_identity(*modules: str) -> CodeIdentity:
         if name in found:
             continue
         top = name.partition(".")[0]
-        if top not in _OWN:
+        if top not in own:
             others.add(top)
             continue
-        module = _module(name)
+        module = _module(name, own)
         if module is not None:
             found[name] = module.text
             pending += module.imports
@@ -66,25 +68,25 @@ def code_identity(*modules: str) -> CodeIdentity:
 
 
 @cache
-def _module(name: str) -> _Module | None:
+def _module(name: str, own: frozenset[str]) -> _Module | None:
     """Return what counts of a module; None where the name is no module's."""
     spec = find_spec(name)
     if spec is None or spec.origin is None:
         return None
     with open(spec.origin, "rb") as file:
         tree = ast.parse(file.read())
-    imports = tuple(_imported(tree))
+    imports = tuple(_imported(tree, own))
     return _Module(ast.dump(_bare(tree)), imports)
 
 
-def _imported(tree: ast.Module) -> Iterator[str]:
+def _imported(tree: ast.Module, own: frozenset[str]) -> Iterator[str]:
     """Yield what may be modules among the names that are imported."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module is not None:
             yield node.module
-            if node.module.partition(".")[0] in _OWN:
+            if node.module.partition(".")[0] in own:
                 for alias in node.names:
                     name = f"{node.module}.{alias.name}"
                     if _is_module(name):

@@ -119,7 +119,10 @@ def table(runs: pd.DataFrame, task: ControlTask, rng: np.random.Generator) -> Ta
     by_episodes = compare(
         runs.assign(time=runs["episodes"]), baseline, task.most_episodes, rng
     )
-    by_steps = compare(runs.assign(time=runs["steps"]), None, task.most_episodes, rng)
+    # Who has not learned by the bound of episodes counts as longer than who has,
+    # however short these were.
+    steps = runs["steps"].where(runs["reached"], runs["steps"].max())
+    by_steps = compare(runs.assign(time=steps), None, int(steps.max()), rng)
     rows = []
     for (_, row), (_, steps) in zip(
         by_episodes.iterrows(), by_steps.iterrows(), strict=True

@@ -63,6 +63,10 @@ class PlannedStudy(msgspec.Struct, frozen=True):
     baseline: str | None
     reduced: bool
     arms: tuple[PlannedArm, ...]
+    source: str = ""
+    """What the study is found by: its name, or a file; empty: nobody wrote it down."""
+    first_seeds: int | None = None
+    """How many an arm has at most, where not all were to be carried out yet."""
 
 
 @dataclass(frozen=True)
@@ -89,13 +93,24 @@ class StudyResults:
         return path if path.exists() else None
 
 
-def plan_study(folder: Path, study: Study) -> list[Path]:
-    """Write down a study and its runs; return their folders, in their order."""
+def plan_study(
+    folder: Path, study: Study, first_seeds: int | None = None
+) -> list[Path]:
+    """Write down a study and its runs; return their folders, in their order.
+
+    Args:
+        folder: the laboratory's.
+        study: that is to be carried out.
+        first_seeds: no more than so many seeds of an arm, and those whose runs have
+            ended already; None: all.
+    """
     addresses: dict[str, dict[str, str]] = {arm.name: {} for arm in study.arms}
+    now = {arm.name: arm.seeds[:first_seeds] for arm in study.arms}
     folders = []
     for arm, spec in study.specs():
-        folders.append(plan(folder / RUNS, spec))
-        addresses[arm][str(spec.seed)] = spec.address
+        if spec.seed in now[arm] or is_done(folder / RUNS / spec.address):
+            folders.append(plan(folder / RUNS, spec))
+            addresses[arm][str(spec.seed)] = spec.address
     file = study.file
     planned = PlannedStudy(
         study.name, file.title, file.paper, file.claim, file.figure, file.goal,
@@ -107,6 +122,7 @@ def plan_study(folder: Path, study: Study) -> list[Path]:
             )
             for arm in study.arms
         ),
+        study.source, first_seeds,
     )  # fmt: skip
     (folder / study.name).mkdir(parents=True, exist_ok=True)
     with atomic_file(folder / study.name / STUDY_FILE) as stream:

@@ -35,6 +35,7 @@ from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_common.command_line import positive
 from biped_common.seeds import learner_stream, robot_stream, trial_stream
+from biped_common.settings import to_mapping
 from biped_lab.markdown import Table
 from biped_lab.searches.plan import PlanSpace
 from biped_lab.searches.search_contestant import PlannedWalk
@@ -42,8 +43,21 @@ from biped_lab.searches.searcher import Walked
 from biped_lab.searches.tail_search import TailSearch, TailSearchOptions
 from learner_node.walking.task import WalkTask
 from learner_node.walking.walks import FrozenWalk
+from sim_node.settings import SensorSettings
 
 MOST_EPISODES = 400
+SENSED = "sim.observations=sensors"
+
+
+def sensor_noise(times: float) -> tuple[str, ...]:
+    """Return changes that make all noise so many times that of the settings."""
+    return tuple(
+        f"sim.sensors.{name}={times * value:.6f}"
+        for name, value in to_mapping(SensorSettings()).items()
+        if "_noise_" in name
+    )
+
+
 DISTURBANCES: Final = {
     "none": (),
     "friction 0.5 instead of 0.9": ("sim.disturbances.friction=0.5",),
@@ -54,8 +68,11 @@ DISTURBANCES: Final = {
     "waist position, 2 mm noise": ("sim.disturbances.position_noise_m=0.002",),
     "ZMP, 2 mm noise": ("sim.disturbances.zmp_noise_m=0.002",),
     "acceleration, 0.1 m/s^2 noise": ("sim.disturbances.acceleration_noise_m_s2=0.1",),
+    "sensors that are one tick late": (
+        SENSED, *sensor_noise(0.0), "sim.sensors.delay_ticks=1",
+    ),
     "the engine without contact": ("sim.engine=kinematic",),
-}
+}  # fmt: skip
 
 
 class Learned(NamedTuple):

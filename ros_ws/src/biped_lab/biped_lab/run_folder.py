@@ -13,9 +13,11 @@ that is done is never run again; a folder in which another process runs is left 
 from __future__ import annotations
 
 import fcntl
+import platform
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -66,6 +68,8 @@ class Cost(msgspec.Struct, frozen=True):
     cpu_s: float = 0.0
     sittings: int = 0
     """How often it was begun or gone on with."""
+    processor: str = ""
+    """That of the last sitting. Another kind may round otherwise."""
 
 
 def plan(runs: Path, spec: RunSpec) -> Path:
@@ -222,8 +226,20 @@ def _keep_cost(folder: Path, contestant: Contestant, sittings: int) -> None:
         contestant.ticks.replayed,
         round(contestant.cpu_s, 3),
         sittings,
+        _processor(),
     )
     _write(folder / COST_FILE, cost)
+
+
+@cache
+def _processor() -> str:
+    """Return what the kernel calls the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    names = (line.partition(":")[2] for line in lines if line.startswith("model name"))
+    return next(names, platform.machine()).strip()
 
 
 def _finish(folder: Path, contestant: Contestant) -> None:

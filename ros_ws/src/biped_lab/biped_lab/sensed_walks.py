@@ -30,43 +30,29 @@ from biped_bringup.run_settings import (
 from biped_bringup.walker import Walker
 from biped_common.command_line import positive
 from biped_common.seeds import trial_stream
-from biped_common.settings import to_mapping
 from biped_lab.markdown import Table
-from biped_lab.robustness import Learned, learn
+from biped_lab.robustness import SENSED, Learned, learn, sensor_noise
 from sim_node.control_tick import ControlTick
 from sim_node.sensed_world import SensedWorld
-from sim_node.settings import SensorSettings
 from sim_node.simulated_hardware import SimulatedHardware
-
-_SENSORS = "sim.observations=sensors"
-
-
-def _noise(times: float) -> tuple[str, ...]:
-    """Return changes that make all noise so many times that of the settings."""
-    return tuple(
-        f"sim.sensors.{name}={times * value:.6f}"
-        for name, value in to_mapping(SensorSettings()).items()
-        if "_noise_" in name
-    )
-
 
 SENSES: Final = {
     "the truth": (),
     "sensors without noise or delay": (
-        _SENSORS, *_noise(0.0), "sim.sensors.delay_ticks=0",
+        SENSED, *sensor_noise(0.0), "sim.sensors.delay_ticks=0",
     ),
-    "one tick of delay": (_SENSORS, *_noise(0.0)),
-    "noise": (_SENSORS, "sim.sensors.delay_ticks=0"),
-    "noise, one tick of delay": (_SENSORS,),
-    "the same, ended at 68 mm": (_SENSORS, "sim.limits.zmp_error_m=0.068"),
-    "noise, three ticks of delay": (_SENSORS, "sim.sensors.delay_ticks=3"),
-    "three times the noise, one tick of delay": (_SENSORS, *_noise(3.0)),
+    "one tick of delay": (SENSED, *sensor_noise(0.0)),
+    "noise": (SENSED, "sim.sensors.delay_ticks=0"),
+    "noise, one tick of delay": (SENSED,),
+    "the same, ended at 68 mm": (SENSED, "sim.limits.zmp_error_m=0.068"),
+    "noise, three ticks of delay": (SENSED, "sim.sensors.delay_ticks=3"),
+    "three times the noise, one tick of delay": (SENSED, *sensor_noise(3.0)),
 }  # fmt: skip
 
 LEARNED_FROM: Final = {
     "truth": (),
-    "sensors": (_SENSORS,),
-    "sensors, within 62 mm": (_SENSORS, "sim.limits.zmp_error_m=0.062"),
+    "sensors": (SENSED,),
+    "sensors, within 62 mm": (SENSED, "sim.limits.zmp_error_m=0.062"),
 }
 
 

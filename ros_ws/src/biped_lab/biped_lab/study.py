@@ -45,6 +45,8 @@ from biped_lab.code_identity import CodeIdentity, code_identity
 from biped_lab.contestant import UnknownContestantError, entry
 from sim_node.engines import ENGINES
 
+_OTHER_FOLDERS = ("runs", "slurm")
+"""What a laboratory's folder holds beside its studies."""
 BY_SETTINGS = "by_settings"
 """The contestant whom the setting `learner.method` names."""
 Goal = Literal["schedule", "greedy"]
@@ -156,6 +158,8 @@ class Study:
     file: StudyFile
     arms: tuple[Arm, ...]
     reduced: bool
+    source: str
+    """What `load_study` finds it by: its name, or a file."""
 
     def specs(self) -> Iterator[tuple[str, RunSpec]]:
         """Yield each run with its arm, seed by seed: what is cut off stays balanced.
@@ -205,18 +209,8 @@ def load_study(name_or_file: str, *, reduced: bool = False) -> Study:
         StudyError: there is none, or it says what cannot be.
     """
     name, values = _read(name_or_file)
-    return study_of(name, values, reduced=reduced)
-
-
-def with_first_seeds(study: Study, count: int) -> Study:
-    """Return a study with no more than its first seeds: one sitting's worth of it.
-
-    Args:
-        study: any.
-        count: how many seeds an arm has at most.
-    """
-    arms = tuple(replace(arm, seeds=arm.seeds[:count]) for arm in study.arms)
-    return replace(study, arms=arms)
+    study = study_of(name, values, reduced=reduced)
+    return replace(study, source=name_or_file)
 
 
 def study_of(name: str, values: Mapping[str, Any], *, reduced: bool = False) -> Study:
@@ -234,16 +228,25 @@ def study_of(name: str, values: Mapping[str, Any], *, reduced: bool = False) -> 
         file = msgspec.convert(dict(values), StudyFile)
     except msgspec.ValidationError as error:
         raise StudyError(f"study {name}: {error}") from None
-    arms = _arms(name, file)
+    arms, source = _arms(name, file), name
     if reduced:
         file, arms = _reduced(name, file, arms)
         name = f"{name}-reduced"
+    if name in _OTHER_FOLDERS:
+        raise StudyError(
+            f"study {name}: must have another name; the laboratory has a folder of "
+            "this one"
+        )
     if file.baseline is not None and file.baseline not in {arm.name for arm in arms}:
         raise StudyError(f"study {name}: baseline {file.baseline!r}: no such arm")
-    return Study(name, file, arms, reduced)
+    return Study(name, file, arms, reduced, source)
 
 
-def _read(name_or_file: str) -> tuple[str, dict[str, Any]]:
+def _read(name_or_file: str, after: tuple[str, ...] = ()) -> tuple[str, dict[str, Any]]:
+    """Return the name and the content of a study that the ones before are like."""
+    if name_or_file in after:
+        chain = " is like ".join((*after, name_or_file))
+        raise StudyError(f"study {name_or_file}: is like itself: {chain}")
     if name_or_file in study_names():
         file = resources.files(__package__) / "studies" / f"{name_or_file}.yaml"
         text, name = file.read_text(), name_or_file
@@ -265,7 +268,10 @@ def _read(name_or_file: str) -> tuple[str, dict[str, Any]]:
     if not isinstance(values, dict):
         raise StudyError(f"study {name_or_file}: must hold keys")
     if "like" in values:
-        _, other = _read(str(values.pop("like")))
+        like = str(values.pop("like"))
+        if like not in study_names():  # a file, beside the one that names it
+            like = str(Path(name_or_file).parent / like)
+        _, other = _read(like, (*after, name_or_file))
         values = {**other, **values}
     return name, values
 

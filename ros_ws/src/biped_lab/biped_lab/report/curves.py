@@ -15,6 +15,7 @@ from biped_common.timing import seconds
 from biped_lab.report.finished import EPISODES, FinishedRuns
 from biped_lab.report.marks import arm_panels, reached
 from biped_lab.statistics.censored import CensoredTimes, reached_curve
+from biped_lab.statistics.comparison import FEWEST_RUNS
 
 RUNNING_MEAN_EPISODES = 10
 _PROGRESS = np.linspace(0.0, 1.0, 101)
@@ -25,11 +26,12 @@ Curves = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 
 def learning_curves(finished: FinishedRuns) -> Figure:
     """Draw the walked time over episodes: median and quartiles over the runs."""
-    curves = _over_episodes(finished, finished.arms, _walked_s)
-    figure = _quartile_panels(finished, curves, "walked time [s]", "episode")
     longest = max(table["target_ticks"].max() for table in finished.tables.values())
+    whole_s = seconds(int(longest))
+    curves = _over_episodes(finished, finished.arms, _walked_s, at_goal=whole_s)
+    figure = _quartile_panels(finished, curves, "walked time [s]", "episode")
     for axes in figure.axes:
-        axes.axhline(seconds(int(longest)), color=GREY, linewidth=0.8, linestyle=":")
+        axes.axhline(whole_s, color=GREY, linewidth=0.8, linestyle=":")
         axes.set_ylim(bottom=0.0)
     return figure
 
@@ -45,12 +47,13 @@ def share_at_goal(finished: FinishedRuns) -> Figure:
         if rival in curves:
             _draw_steps(axes, curves[rival], GREY)
         curve = curves[arm]
-        axes.fill_between(
-            curve["episode"], curve["low"], curve["high"], step="post",
-            color=colour[arm], alpha=0.2, linewidth=0.0,
-        )  # fmt: skip
-        _draw_steps(axes, curve, colour[arm])
         times = _times(finished.of(arm))
+        if len(times) >= FEWEST_RUNS:
+            axes.fill_between(
+                curve["episode"], curve["low"], curve["high"], step="post",
+                color=colour[arm], alpha=0.2, linewidth=0.0,
+            )  # fmt: skip
+        _draw_steps(axes, curve, colour[arm])
         censored = times.time[~times.reached]
         shares = [curve["reached"][curve["episode"] <= t].iloc[-1] for t in censored]
         if len(censored):
@@ -97,21 +100,24 @@ def _over_episodes(
     finished: FinishedRuns,
     arms: Sequence[str],
     column: Callable[[pd.DataFrame], NDArray[np.float64]],
+    at_goal: float | None = None,
 ) -> Curves:
-    """Return a column of all runs; a run that has ended stays at its last value."""
+    """Return a column of all runs; one that has ended stays at its last value.
+
+    A run at its goal goes on at `at_goal` instead, where that is given.
+    """
     longest = max(len(table) for table in finished.tables.values())
-    return {
-        arm: (
-            np.arange(1, longest + 1, dtype=np.float64),
-            np.array(
-                [
-                    np.pad(column(table), (0, longest - len(table)), mode="edge")
-                    for table in finished.tables_of(arm)
-                ]
-            ),
-        )
-        for arm in arms
-    }
+    curves = {}
+    for arm in arms:
+        rows = []
+        ends = zip(finished.tables_of(arm), finished.of(arm)["reached"], strict=True)
+        for table, at_its_goal in ends:
+            values = column(table)
+            goes_on = at_goal is not None and at_its_goal
+            after = np.full(longest - len(values), at_goal if goes_on else values[-1])
+            rows.append(np.concatenate([values, after]))
+        curves[arm] = np.arange(1, longest + 1, dtype=np.float64), np.array(rows)
+    return curves
 
 
 def _quartile_panels(

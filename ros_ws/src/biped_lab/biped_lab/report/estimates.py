@@ -53,11 +53,13 @@ def compared(finished: FinishedRuns, rng: np.random.Generator) -> pd.DataFrame:
     P-values are corrected for all comparisons of the study.
     """
     runs, rivals = finished.results.runs, finished.arrangement.rivals
+    draws = int(rng.integers(2**63))
     rows = []
     for arm in finished.arms:
         rival = rivals[arm] if rivals[arm] in finished.arms else None
         both = runs[runs["arm"].isin([arm, rival])]
-        table = compare(both, rival, finished.bound, rng).set_index("arm")
+        same = np.random.default_rng(draws)
+        table = compare(both, rival, finished.bound, same).set_index("arm")
         rows.append(table.loc[[arm]])
     found = pd.concat(rows)
     found["p_holm"] = holm(found["p_wilcoxon"].to_list())

@@ -155,8 +155,8 @@ def _learning_curves(finished: FinishedRuns) -> ReportFigure:
         "Learning curves",
         "Walked time of an episode, for each run the running mean over the last "
         f"{RUNNING_MEAN_EPISODES} episodes: median (line) and quartiles (band) over "
-        "the runs. A run that has ended stays at its last value, whether it reached "
-        "the goal or was stopped. Dotted: the longest target time."
+        "the runs. A run that has reached the goal goes on at the longest target "
+        "time, one that was stopped at its last value. Dotted: the longest target time."
         + _compared_in_grey(finished),
         learning_curves(finished),
     )
@@ -166,7 +166,8 @@ def _share_at_goal(finished: FinishedRuns) -> ReportFigure:
     return ReportFigure(
         "share_at_goal",
         "Runs that have reached the goal",
-        "Estimate of Kaplan and Meier with its pointwise 95 % interval (band); ticks "
+        "Estimate of Kaplan and Meier with its pointwise 95 % interval (band; Wilson's "
+        f"where none or all are there; none of fewer than {FEWEST_RUNS} runs); ticks "
         f"mark runs that were stopped at the bound of {finished.bound} episodes."
         + _compared_in_grey(finished),
         share_at_goal(finished),

@@ -164,8 +164,8 @@ def arm_panels(
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for unused in grid.flat[len(arms) :]:
         unused.set_visible(False)
-    for i, (arm, axes) in enumerate(zip(arms, grid.flat, strict=False)):
-        axes.set_title(titles[i], color=finished.arrangement.colours[arm])
+    for i, (title, axes) in enumerate(zip(titles, grid.flat, strict=False)):
+        axes.set_title(title)
         if i + columns >= len(arms):
             axes.tick_params(labelbottom=True)
     figure.supxlabel(x_label, fontsize=9.0)

@@ -5,20 +5,24 @@ from __future__ import annotations
 from collections import Counter
 
 from biped_lab.results import PlannedArm, StudyResults
-from biped_lab.run_folder import RunError, read_spec
+from biped_lab.run_folder import RunError, read_cost, read_spec
 from biped_lab.study import BY_SETTINGS
 
 
 def provenance(results: StudyResults) -> list[tuple[str, str]]:
     """Return what there is to say, each with its name."""
     study = results.study
-    name = study.name.removesuffix("-reduced")
-    reduced = " --reduced" if study.reduced else ""
+    command = f"biped lab run {study.source or study.name.removesuffix('-reduced')}"
+    command += " --reduced" if study.reduced else ""
+    command += f" --seeds {study.first_seeds}" if study.first_seeds else ""
+    processors: Counter[str] = Counter()
     codes: Counter[str] = Counter()
     packages: Counter[str] = Counter()
     silent = 0
     for address in results.runs["address"]:
         try:
+            processor = read_cost(results.run_folder(address)).processor
+            processors[processor or "not noted"] += 1
             spec = read_spec(results.run_folder(address))
         except RunError:
             silent += 1
@@ -27,10 +31,11 @@ def provenance(results: StudyResults) -> list[tuple[str, str]]:
         versions = sorted(spec.packages.items())
         packages[", ".join(f"{name} {version}" for name, version in versions)] += 1
     found = [
-        ("runs", f"biped lab run {name}{reduced}"),
+        ("runs", command),
         ("report", f"biped lab report DIR {study.name}"),
         ("code", _counted(codes)),
         ("packages", _counted(packages)),
+        ("processor", _counted(processors)),
     ]
     if silent:
         found.append(("not known", f"of {silent} runs, whose run.json is not there"))

@@ -24,8 +24,10 @@ def findings_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
     relative = any(rival in finished.arms for rival in rivals)
     estimate = ratio_of_means if relative else restricted_mean
     form, by = ("{:.2f}", "relative") if relative else ("{:.0f}", "mean")
+    draws = int(rng.integers(2**63))
     rows = []
     for arm in finished.arms:
+        rng = np.random.default_rng(draws)
         goal = finished.of(arm)["reached"]
         rows.append(
             (
@@ -46,9 +48,10 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
     Nothing in it depends on the machine: the same data give the same bytes.
     """
     statistics = compared(finished, rng)
+    draws = int(rng.integers(2**63))
     rows = []
     for arm in finished.arms:
-        found = statistics.loc[arm]
+        found, rng = statistics.loc[arm], np.random.default_rng(draws)
         mean_episodes = restricted_mean(finished, arm, EPISODES, rng)
         mean_s = restricted_mean(finished, arm, SIMULATED, rng)
         share = restricted_mean(finished, arm, FIXED_SHARE, rng)
@@ -77,6 +80,34 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
     return Table(head, tuple(rows))
 
 
+def comparisons_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
+    """Return all tests of the arms against their rivals, those that judge and others.
+
+    P-values are as they are, without correction for how many there are.
+    """
+    statistics = compared(finished, rng)
+    rows = [
+        (
+            arm,
+            finished.arrangement.rivals[arm] or NOTHING,
+            _text(_of(found, "completed"), "{:.2f}"),
+            str(int(found["pairs"])),
+            _number(found["rmst_difference"], "{:.0f}"),
+            *(
+                _number(found[p], "{:.2g}")
+                for p in ("p_wilcoxon", "p_paired", "p_logrank", "p_rmst")
+            ),
+        )
+        for arm, found in statistics.iterrows()
+    ]
+    head = (
+        "arm", "compared with", "at the goal [ ]", "seeds in both",
+        "difference of means [episodes]", "p, Wilcoxon", "p, Wilcoxon within pairs",
+        "p, log-rank", "p, mean",
+    )  # fmt: skip
+    return Table(head, tuple(rows))
+
+
 def studies_table(
     one: StudyResults, other: StudyResults, rng: np.random.Generator
 ) -> Table:
@@ -85,12 +116,17 @@ def studies_table(
     Where both have the same runs, all is equal. P-values are corrected for all arms.
 
     Raises:
-        ResultsError: no arm of that name, or bounds that differ.
+        ResultsError: no arm of that name, or goals or bounds that differ.
     """
     arms = [arm.name for arm in one.study.arms]
     arms = [name for name in arms if name in {arm.name for arm in other.study.arms}]
     if not arms:
         raise ResultsError(f"{one.study.name}, {other.study.name}: no arm in common")
+    if one.study.goal != other.study.goal:
+        raise ResultsError(
+            f"{one.study.name}, {other.study.name}: the goals {one.study.goal} and "
+            f"{other.study.goal} do not compare"
+        )
     bound = one.study.most_episodes
     if bound != other.study.most_episodes:
         raise ResultsError(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -70,17 +73,23 @@ def never_interrupted(finished: FinishedRuns) -> pd.DataFrame:
 def draw_replay(finished: FinishedRuns) -> Figure:
     """Draw what the physics computed of what was walked, run by run."""
     runs = never_interrupted(finished)
-    figure = new_figure(3.9)
+    rows = math.ceil(len(finished.arms) / _LEGEND_COLUMNS)
+    many = len(finished.arms) > _MOST_BESIDE
+    figure = new_figure(3.9 + 0.2 * rows * many)
     axes = figure.subplots()
-    for n, arm in enumerate(finished.arms):
+    alike: Counter[str] = Counter()
+    for arm in finished.arms:
         own = runs[runs["arm"] == arm]
+        colour = finished.arrangement.colours[arm]
+        marker = _MARKERS[alike[colour] % len(_MARKERS)]
+        alike[colour] += 1
         if own.empty:
             continue
         axes.plot(
             own["simulated_s"] + own["evaluation_s"],
             own["computed_s"],
-            _MARKERS[n % len(_MARKERS)],
-            markerfacecolor=finished.arrangement.colours[arm],
+            marker,
+            markerfacecolor=colour,
             markeredgecolor=INK,
             markeredgewidth=0.5,
             markersize=5.0,
@@ -103,8 +112,13 @@ def draw_replay(finished: FinishedRuns) -> Figure:
         axis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("walked: simulated time, frozen trials included [s]")
     axes.set_ylabel("computed by the physics [s]")
-    axes.legend(loc="center left", bbox_to_anchor=(1.1, 0.5))
+    if many:
+        figure.legend(loc="outside lower center", ncols=_LEGEND_COLUMNS)
+    else:
+        axes.legend(loc="center left", bbox_to_anchor=(1.1, 0.5))
     return figure
 
 
 _MARKERS = "osD^vPX"
+"""Arms of the same colour differ in these."""
+_MOST_BESIDE, _LEGEND_COLUMNS = 14, 3

@@ -4,6 +4,7 @@ In `DIR/STUDY/`:
 
     report.html   everything, with light and dark looks, for any browser and offline
     table.md      what the arms achieved; the same bytes for the same data
+    tests.md      how they differ, by every test; the same bytes for the same data
     cost.md       what the runs took, which depends on the machine
     figures/      every figure as SVG and PNG; what else lay there is deleted
 """
@@ -23,6 +24,7 @@ from biped_lab.report.finished import FinishedRuns, finished_runs
 from biped_lab.report.provenance import provenance
 from biped_lab.report.tables import (
     arms_table,
+    comparisons_table,
     cost_table,
     findings_table,
     runs_table,
@@ -30,7 +32,8 @@ from biped_lab.report.tables import (
 from biped_lab.report.theme import inline_svg, png, svg, theme
 from biped_lab.results import StudyResults
 
-PAGE, TABLE, COST, FIGURES = "report.html", "table.md", "cost.md", "figures"
+PAGE, FIGURES = "report.html", "figures"
+TABLE, TESTS, COST = "table.md", "tests.md", "cost.md"
 _SEED = 20_110
 """Of the bootstrap: the same data have the same intervals."""
 
@@ -70,9 +73,12 @@ def write_report(results: StudyResults) -> Path:
             "findings_note": _findings_note(finished),
             "arms": arms_table(finished, _rng()),
             "arms_note": _ARMS_NOTE,
+            "comparisons": comparisons_table(finished, _rng()),
+            "comparisons_note": _COMPARISONS_NOTE,
             "cost": cost_table(finished),
         }
         _write(folder / TABLE, content["arms"].markdown().encode())
+        _write(folder / TESTS, content["comparisons"].markdown().encode())
         _write(folder / COST, content["cost"].markdown().encode())
     page = folder / PAGE
     _write(page, _template().render(content).encode())
@@ -104,6 +110,13 @@ _ARMS_NOTE = (
     "medians and the probability of being faster are of episodes, against the arm in "
     "the column before them; p: permutation test of Wilcoxon scores, corrected after "
     "Holm for all comparisons of the study. ∞: beyond what was watched."
+)
+
+
+_COMPARISONS_NOTE = (
+    "The fraction of runs at the goal, with Wilson's interval. Permutation tests, none "
+    "corrected: that of Wilcoxon scores judges, the others are there to be looked at. "
+    "Within pairs: of the seeds that both arms have. Means are restricted to the bound."
 )
 
 

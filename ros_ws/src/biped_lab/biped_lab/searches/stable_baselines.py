@@ -16,7 +16,6 @@ generators of PyTorch and NumPy, which the library seeds: one contestant per pro
 from __future__ import annotations
 
 import hashlib
-import importlib
 import sys
 import threading
 import time
@@ -148,8 +147,9 @@ class PpoContestant:
             MissingExtraError: Stable-Baselines3 is not installed.
         """
         try:
-            library = importlib.import_module("stable_baselines3")
-            torch = importlib.import_module("torch")
+            # Named as modules are, so that their versions are the run's.
+            import stable_baselines3 as library
+            import torch
         except ImportError as error:
             raise MissingExtraError(
                 "contestant 'stable_baselines': needs the extra sb3, "

@@ -78,25 +78,27 @@ def reached_curve(times: CensoredTimes) -> pd.DataFrame:
 
     Returns:
         Columns `episode` (0, then each time at which a run ended), `reached`, `low`,
-        `high`: a step function, and its pointwise interval (log-log transformed).
+        `high`: a step function, and its pointwise interval (log-log transformed; where
+        none or all have succeeded, it would have no width, and is Wilson's).
     """
     fit = KaplanMeierFitter(alpha=1 - CONFIDENCE).fit(times.time, times.reached)
     not_yet = fit.confidence_interval_survival_function_
+    share = 1 - fit.survival_function_.iloc[:, 0].to_numpy()
+    none, every = share < ROUNDING, share > 1 - ROUNDING
+    n = len(times)
     return pd.DataFrame(
         {
             "episode": fit.survival_function_.index.to_numpy(),
-            "reached": 1 - fit.survival_function_.iloc[:, 0].to_numpy(),
-            "low": 1 - not_yet.iloc[:, 1].to_numpy(),
-            "high": 1 - not_yet.iloc[:, 0].to_numpy(),
+            "reached": share,
+            "low": np.where(every, _wilson(n, n).low, 1 - not_yet.iloc[:, 1]),
+            "high": np.where(none, _wilson(0, n).high, 1 - not_yet.iloc[:, 0]),
         }
     )
 
 
 def completed(times: CensoredTimes) -> Estimate:
     """Return the fraction of runs that succeeded at all, with Wilson's interval."""
-    test = binomtest(int(times.reached.sum()), len(times))
-    interval = test.proportion_ci(CONFIDENCE, method="wilson")
-    return Estimate(float(test.statistic), float(interval.low), float(interval.high))
+    return _wilson(int(times.reached.sum()), len(times))
 
 
 def median(times: CensoredTimes) -> Estimate:
@@ -174,3 +176,9 @@ def scatter(times: CensoredTimes) -> float:
     if times.reached.sum() < 2:
         return float("nan")
     return float(np.log(times.time[times.reached]).std(ddof=1))
+
+
+def _wilson(successes: int, runs: int) -> Estimate:
+    test = binomtest(successes, runs)
+    interval = test.proportion_ci(CONFIDENCE, method="wilson")
+    return Estimate(float(test.statistic), float(interval.low), float(interval.high))

@@ -33,7 +33,7 @@ from biped_lab.execution import (
 from biped_lab.progress import StudyProgress
 from biped_lab.results import plan_study
 from biped_lab.run_folder import CHECKPOINT_EVERY_S
-from biped_lab.study import load_study, study_names, with_first_seeds
+from biped_lab.study import load_study, study_names
 
 DEFAULT_OUT = Path("bags/lab")
 _PER_SLURM_JOB = 8
@@ -132,12 +132,10 @@ def add_parser(verbs: Any, _: Sequence[str]) -> None:
 def run(options: argparse.Namespace) -> int:
     """Carry out the study."""
     study = load_study(options.study, reduced=options.reduced)
-    if options.seeds is not None:
-        study = with_first_seeds(study, options.seeds)
     folder = writable_folder(options.out).absolute()  # workers may be elsewhere
     open_executor = _executor(options, folder)
     here = not (options.dask or options.slurm)
-    folders = plan_study(folder, study)
+    folders = plan_study(folder, study, options.seeds)
     console = Console(stderr=True)
     began = time.monotonic()
     with (
