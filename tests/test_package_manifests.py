@@ -47,6 +47,7 @@ FROM_PIP = {
     "stable_baselines3": "stable-baselines3",
     "submitit": "submitit",
     "threadpoolctl": "threadpoolctl",
+    "torch": "torch",
     "viser": "viser",
     "zstandard": "zstandard",
 }

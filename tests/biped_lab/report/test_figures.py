@@ -8,9 +8,9 @@ from matplotlib.colors import same_color, to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from tests.biped_lab.report.made_results import (
+    BOUND,
     BY_LT,
     STRATEGY_1,
-    TICKS,
     made_results,
     runs_of,
 )
@@ -154,18 +154,37 @@ def test_strategy_2_is_compared_with_no_fixed_mode_at_the_same_lt(
 # -- curves ----------------------------------------------------------------------------
 
 
-def test_a_run_that_has_ended_stays_at_its_last_value(
-    strategy_1: FinishedRuns,
+@pytest.mark.parametrize(("arm", "at_goal"), [("K = 1", True), ("K = none", False)])
+def test_a_run_that_has_ended_goes_on_at_the_goal_or_at_its_last_value(
+    tmp_path: Path, arm: str, at_goal: bool
 ) -> None:
-    (median,) = (
-        line
-        for line in learning_curves(strategy_1).axes[1].lines
-        if same_color(line.get_color(), VERMILLION)
+    runs = [*runs_of("K = 1", 9, 9, 9), *runs_of("K = none", BOUND, BOUND, BOUND)]
+    finished = finished_runs(made_results(tmp_path, runs))
+    axes = learning_curves(finished).axes[list(finished.arms).index(arm)]
+    colour = finished.arrangement.colours[arm]
+    dotted, median = (
+        next(line for line in axes.lines if line.get_linestyle() == style and of(line))
+        for style, of in (
+            (":", lambda _: True),
+            ("-", lambda line: same_color(line.get_color(), colour)),
+        )
     )
-    walked_s = median.get_ydata()
-    assert len(walked_s) == 40
-    assert len(set(walked_s[15:])) == 1
-    assert walked_s[-1] < TICKS / 500
+    walked_s, whole_s = median.get_ydata(), dotted.get_ydata()[0]
+    assert len(walked_s) == BOUND
+    assert (walked_s[-1] == whole_s) == at_goal
+
+
+def test_no_two_arms_have_the_same_mark(tmp_path: Path) -> None:
+    names = [f"arm {n}" for n in range(17)]
+    runs = [run for n, name in enumerate(names) for run in runs_of(name, 5 + n)]
+    made = made_results(tmp_path, runs, {name: {} for name in names}, baseline="arm 0")
+    (axes,) = draw_replay(finished_runs(made)).axes
+    marks = [
+        (line.get_marker(), line.get_markerfacecolor())
+        for line in axes.lines
+        if line.get_linestyle() == "None"
+    ]
+    assert len(marks) == len(set(marks)) == 17
 
 
 def test_each_run_that_was_stopped_has_a_tick(strategy_1: FinishedRuns) -> None:

@@ -60,3 +60,10 @@ def test_other_bounds_are_refused(tmp_path: Path) -> None:
     longer = msgspec.structs.replace(study.study, most_episodes=41)
     with pytest.raises(ResultsError, match="bounds of 40 and 41 episodes"):
         table(study, replace(study, study=longer))
+
+
+def test_other_goals_are_refused(tmp_path: Path) -> None:
+    study = results(tmp_path)
+    greedy = msgspec.structs.replace(study.study, goal="greedy")
+    with pytest.raises(ResultsError, match="the goals schedule and greedy do not"):
+        table(study, replace(study, study=greedy))

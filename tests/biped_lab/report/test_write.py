@@ -120,6 +120,39 @@ def test_what_the_machine_did_is_not_in_the_table_but_in_that_of_the_cost(
     assert cost_table(before) != cost_table(after)
 
 
+def test_every_test_of_an_arm_is_shown(page: Path) -> None:
+    text = read(page).text
+    assert "p, log-rank" in text
+    table = (page.parent / "tests.md").read_text().splitlines()
+    assert [row.split("|")[1].strip() for row in table[2:]] == [
+        "K = 1", "K = 3", "K = none",
+    ]  # fmt: skip
+    pairs = [row.split("|")[4].strip() for row in table[2:]]
+    assert pairs == ["5", "5", "0"]  # none with itself
+
+
+def test_without_comparisons_there_are_no_tests(tmp_path: Path) -> None:
+    runs = runs_of("K = 1", 5, 6, 7)
+    page = write_report(made_results(tmp_path, runs, baseline=None))
+    assert not (page.parent / "tests.md").exists()
+    assert "log-rank" not in read(page).text
+
+
+def test_an_arm_has_the_same_intervals_whoever_stands_beside_it(
+    tmp_path: Path,
+) -> None:
+    alone = [run for run in STRATEGY_1 if run.arm in ("K = 3", "K = none")]
+    rows = [
+        arms_table(
+            finished_runs(made_results(tmp_path / name, runs)), np.random.default_rng(5)
+        ).rows
+        for name, runs in (("all", STRATEGY_1), ("two", alone))
+    ]
+    (among,) = (row for row in rows[0] if row[0] == "K = 3")
+    (beside_one,) = (row for row in rows[1] if row[0] == "K = 3")
+    assert among[:-2] == beside_one[:-2]  # all but what is corrected, and its neighbour
+
+
 def test_one_arm_of_one_interrupted_run_without_states_is_reported(
     tmp_path: Path,
 ) -> None:

@@ -65,6 +65,16 @@ def test_the_curve_lies_within_its_interval_and_only_rises():
     assert curve["reached"].is_monotonic_increasing
 
 
+@pytest.mark.parametrize(
+    ("success", "low", "high"), [(False, 0, 0.49), (True, 0.51, 1)]
+)
+def test_where_none_or_all_have_succeeded_the_interval_is_wilsons(success, low, high):
+    """With four runs: 0.4899, by hand."""
+    times = CensoredTimes(np.full(4, 10.0), np.full(4, success))
+    last = reached_curve(times).iloc[-1]
+    assert (last["low"], last["high"]) == pytest.approx((low, high), abs=0.001)
+
+
 def test_the_medians_are_those_of_the_textbooks():
     assert median(TREATED).value == 23
     assert median(PLACEBO) == (8, 4, 11)

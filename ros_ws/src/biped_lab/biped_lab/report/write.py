@@ -4,7 +4,7 @@ In `DIR/STUDY/`:
 
     report.html   everything, with light and dark looks, for any browser and offline
     table.md      what the arms achieved; the same bytes for the same data
-    tests.md      how they differ, by every test; the same bytes for the same data
+    tests.md      how they differ, by every test, where arms are compared; likewise
     cost.md       what the runs took, which depends on the machine
     figures/      every figure as SVG and PNG; what else lay there is deleted
 """
@@ -65,6 +65,7 @@ def write_report(results: StudyResults) -> Path:
         "figures": [],
         "findings": None,
         "arms": None,
+        "comparisons": None,
     }
     if finished.arms:
         content |= {
@@ -73,13 +74,18 @@ def write_report(results: StudyResults) -> Path:
             "findings_note": _findings_note(finished),
             "arms": arms_table(finished, _rng()),
             "arms_note": _ARMS_NOTE,
-            "comparisons": comparisons_table(finished, _rng()),
-            "comparisons_note": _COMPARISONS_NOTE,
             "cost": cost_table(finished),
         }
         _write(folder / TABLE, content["arms"].markdown().encode())
-        _write(folder / TESTS, content["comparisons"].markdown().encode())
         _write(folder / COST, content["cost"].markdown().encode())
+        if any(
+            rival in finished.arms for rival in finished.arrangement.rivals.values()
+        ):
+            content |= {
+                "comparisons": comparisons_table(finished, _rng()),
+                "comparisons_note": _COMPARISONS_NOTE,
+            }
+            _write(folder / TESTS, content["comparisons"].markdown().encode())
     page = folder / PAGE
     _write(page, _template().render(content).encode())
     return page
