@@ -218,6 +218,38 @@ def test_a_stop_before_a_walk_leads_nowhere(new_biped, hardware, person):
     assert person.asked == []
 
 
+def test_a_stop_on_the_way_to_the_stance_ends_it_there(new_biped, hardware, person):
+    biped = new_biped(SHIPPED)
+    assert not biped.world.hardware.ready()
+
+    def presses():
+        person.have_it_walk()
+        end = time.monotonic() + TIMEOUT_S
+        while not person.asked:
+            assert time.monotonic() < end
+            person.executor.spin_once(0.01)
+        person.press(True)
+
+    asks = threading.Thread(target=presses)
+    asks.start()
+    observation = biped.begin_walk(1)
+    asks.join()
+    assert (observation.control_tick, observation.end_cause) == (
+        0,
+        EndCause.EMERGENCY_STOP,
+    )
+    asked = person.last_asked()
+    assert np.ptp(asked[TICKS_PER_LEARNING_TICK:], axis=0).max() == 0.0
+
+
+def test_a_node_that_ends_asks_the_joints_to_stay(new_biped, hardware, person):
+    biped = new_biped(SHIPPED)
+    assert begin(biped, person, 1).end_cause is None
+    assert biped.execute(next(segments())).end_cause is None
+    biped.close()
+    assert_asked_to_stay(person)
+
+
 def test_a_walk_that_was_asked_for_is_not_begun_much_later(
     new_biped, hardware, person, monkeypatch
 ):
