@@ -58,7 +58,7 @@ from sim_node.physics import Array, Vector
 from sim_node.sensed_world import Hardware
 from sim_node.sensor_intake import SensorIntake
 from sim_node.sensors import SensorReading
-from sim_node.sent_trajectory import SentTrajectory
+from sim_node.sent_trajectory import LEAST_LOOK_AHEAD_TICKS, SentTrajectory
 from sim_node.settings import SensorSettings
 
 NAME = "robot_hardware"
@@ -70,7 +70,6 @@ _ASKED_S = 10.0
 # From where the joints are to the stance, and standing there.
 _TO_STANCE_TICKS = control_ticks(2.0)
 _STANDING_TICKS = control_ticks(0.5)
-_LOOK_AHEAD_TICKS = 50
 _LATE_TICKS = control_ticks(0.03)
 """From a reading until what answers it has to be sent."""
 _SHARE = 0.2
@@ -266,12 +265,16 @@ class RobotHardware(Hardware):
         # The path of least jerk: at rest at both ends.
         s = np.arange(1, _TO_STANCE_TICKS + 1)[:, None] / _TO_STANCE_TICKS
         share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
-        stands = np.tile(self._stance, (_STANDING_TICKS + _LOOK_AHEAD_TICKS, 1))
+        stands = np.tile(self._stance, (_STANDING_TICKS + LEAST_LOOK_AHEAD_TICKS, 1))
         way = np.vstack([start + share * (self._stance - start), stands])
         self._origin_ns = None
         readings = []
-        for tick in range(0, len(way) - _LOOK_AHEAD_TICKS, TICKS_PER_LEARNING_TICK):
-            self.plan(way[tick : tick + TICKS_PER_LEARNING_TICK + _LOOK_AHEAD_TICKS])
+        for tick in range(
+            0, len(way) - LEAST_LOOK_AHEAD_TICKS, TICKS_PER_LEARNING_TICK
+        ):
+            self.plan(
+                way[tick : tick + TICKS_PER_LEARNING_TICK + LEAST_LOOK_AHEAD_TICKS]
+            )
             for _ in range(TICKS_PER_LEARNING_TICK):
                 readings.append(self.exchange(self._stance, np.zeros(0)))
         self._origin_ns = None

@@ -64,13 +64,14 @@ def test_what_was_not_learned_is_censored(program):
             "seed": [*range(6)] * 2,
             "reached": [True] * 6 + [True, True] + [False] * 4,
             "episodes": [10, 20, 30, 30, 40, 50, 20, 40, 50, 50, 50, 50],
-            "steps": [100] * 12,
+            "steps": [100] * 8 + [10] * 4,  # who fails early walks few steps
             "cpu_s": [0.0] * 12,
         }
     )
     rows = table(runs, read_task(program), np.random.default_rng(1)).rows
     assert [row[1] for row in rows] == ["6 of 6", "2 of 6"]
     assert rows[0][2].startswith("30 [") and rows[1][2].startswith("∞ [")
+    assert rows[1][3].startswith("∞ [")
 
 
 def test_without_continuous_actions_there_is_no_sac(program):

@@ -121,8 +121,9 @@ def table(runs: pd.DataFrame, task: ControlTask, rng: np.random.Generator) -> Ta
     )
     # Who has not learned by the bound of episodes counts as longer than who has,
     # however short these were.
-    steps = runs["steps"].where(runs["reached"], runs["steps"].max())
-    by_steps = compare(runs.assign(time=steps), None, int(steps.max()), rng)
+    most_steps = int(runs["steps"].max())
+    times = runs["steps"].where(runs["reached"], most_steps)
+    by_steps = compare(runs.assign(time=times), None, most_steps, rng)
     rows = []
     for (_, row), (_, steps) in zip(
         by_episodes.iterrows(), by_steps.iterrows(), strict=True

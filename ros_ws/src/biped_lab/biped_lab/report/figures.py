@@ -140,8 +140,7 @@ def _fixed_states(finished: FinishedRuns, rng: np.random.Generator) -> ReportFig
 
 
 def _compared_in_grey(finished: FinishedRuns) -> str:
-    rivals = {finished.arrangement.rivals[arm] for arm in finished.arms}
-    rivals &= set(finished.arms)
+    rivals = finished.rivals
     if not rivals:
         return ""
     if len(rivals) == 1:

@@ -59,6 +59,12 @@ class FinishedRuns:
         )
 
     @property
+    def rivals(self) -> set[str]:
+        """Arms that others are compared with."""
+        rivals = {self.arrangement.rivals[arm] for arm in self.arms}
+        return {arm for arm in self.arms if arm in rivals}
+
+    @property
     def bound(self) -> int:
         """Episodes after which a run is stopped."""
         return self.results.study.most_episodes

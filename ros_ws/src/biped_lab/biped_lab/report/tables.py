@@ -20,8 +20,7 @@ NOTHING = "–"
 
 def findings_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
     """Return in short what was found, to be read beside what the paper says."""
-    rivals = [finished.arrangement.rivals[arm] for arm in finished.arms]
-    relative = any(rival in finished.arms for rival in rivals)
+    relative = bool(finished.rivals)
     estimate = ratio_of_means if relative else restricted_mean
     form, by = ("{:.2f}", "relative") if relative else ("{:.0f}", "mean")
     draws = int(rng.integers(2**63))

@@ -78,9 +78,7 @@ def write_report(results: StudyResults) -> Path:
         }
         _write(folder / TABLE, content["arms"].markdown().encode())
         _write(folder / COST, content["cost"].markdown().encode())
-        if any(
-            rival in finished.arms for rival in finished.arrangement.rivals.values()
-        ):
+        if finished.rivals:
             content |= {
                 "comparisons": comparisons_table(finished, _rng()),
                 "comparisons_note": _COMPARISONS_NOTE,
@@ -127,8 +125,7 @@ _COMPARISONS_NOTE = (
 
 
 def _findings_note(finished: FinishedRuns) -> str:
-    rivals = {finished.arrangement.rivals[arm] for arm in finished.arms}
-    rivals &= set(finished.arms)
+    rivals = finished.rivals
     if not rivals:
         return "Means restricted to the bound; time in simulated seconds."
     whom = rivals.pop() if len(rivals) == 1 else "the same arm without fixed mode"
