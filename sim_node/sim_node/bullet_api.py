@@ -22,6 +22,8 @@ with engine_chatter_dropped():
 
 VELOCITY_CONTROL: Final[int] = pybullet.VELOCITY_CONTROL
 POSITION_CONTROL: Final[int] = pybullet.POSITION_CONTROL
+TORQUE_CONTROL: Final[int] = pybullet.TORQUE_CONTROL
+JOINT_GEAR: Final[int] = pybullet.JOINT_GEAR
 LCP_DANTZIG: Final[int] = pybullet.CONSTRAINT_SOLVER_LCP_DANTZIG
 USE_INERTIA_FROM_FILE: Final[int] = pybullet.URDF_USE_INERTIA_FROM_FILE
 WORLD_FRAME: Final[int] = pybullet.WORLD_FRAME
@@ -64,8 +66,16 @@ _SIGNATURES: Final = {
     "b3ChangeDynamicsInfoSetSpinningFriction": "i p i i d",
     "b3ChangeDynamicsInfoSetRestitution": "i p i i d",
     "b3ChangeDynamicsInfoSetJointDamping": "i p i i d",
+    "b3ChangeDynamicsInfoSetMaxJointVelocity": "i p i d",
     "b3ChangeDynamicsInfoSetLinearDamping": "i p i d",
     "b3ChangeDynamicsInfoSetAngularDamping": "i p i d",
+    # Gears.
+    "b3InitCreateUserConstraintCommand": "p p i i i i p",
+    "b3GetStatusUserConstraintUniqueId": "i p",
+    "b3InitChangeUserConstraintCommand": "p p i",
+    "b3InitChangeUserConstraintSetGearRatio": "i p d",
+    "b3InitChangeUserConstraintSetMaxForce": "i p d",
+    "b3InitChangeUserConstraintSetERP": "i p d",
     # Poses.
     "b3CreatePoseCommandInit": "p p i",
     "b3CreatePoseCommandSetBasePosition": "i p d d d",
@@ -87,6 +97,7 @@ _SIGNATURES: Final = {
     "b3JointControlSetKp": "i p i d",
     "b3JointControlSetKd": "i p i d",
     "b3JointControlSetMaximumForce": "i p i d",
+    "b3JointControlSetDesiredForceTorque": "i p i d",
     "b3ApplyExternalForceCommandInit": "p p",
     "b3ApplyExternalForce": "v p i i p p i",
     "b3InitStepSimulationCommand": "p p",

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from biped_description.joints import JOINT_NAMES
-from sim_node.bullet_api import POSITION_CONTROL, compiled_api
+from sim_node.bullet_api import POSITION_CONTROL, TORQUE_CONTROL, compiled_api
 
 _N_JOINTS = len(JOINT_NAMES)
 # Rows of the joints' numbers: in the API, among positions, among velocities.
@@ -25,6 +25,7 @@ _set_velocity = compiled_api("b3JointControlSetDesiredVelocity")
 _set_position_gain = compiled_api("b3JointControlSetKp")
 _set_velocity_gain = compiled_api("b3JointControlSetKd")
 _set_force = compiled_api("b3JointControlSetMaximumForce")
+_set_torque = compiled_api("b3JointControlSetDesiredForceTorque")
 _init_step = compiled_api("b3InitStepSimulationCommand")
 _request_state = compiled_api("b3RequestActualStateCommandInit")
 _get_state = compiled_api("b3GetStatusActualState")
@@ -74,6 +75,15 @@ def command_servos(
         _set_velocity(message, u_index, dq[i])
         _set_velocity_gain(message, u_index, shares[1])
         _set_force(message, u_index, torque_limits[i])
+    _submit(client, message)
+
+
+@njit(cache=True)
+def pull_joints(client: int, robot: int, numbers: Any, torques: Any) -> None:
+    """Pull at the joints during the next tick by `torques` (12,) [N m]."""
+    message = _init_control(client, robot, TORQUE_CONTROL)
+    for i in range(_N_JOINTS):
+        _set_torque(message, numbers[U_INDEX, i], torques[i])
     _submit(client, message)
 
 
@@ -158,6 +168,24 @@ def tick(
     command_servos(client, robot, numbers, torque_limits, shares, q, dq)
     step_physics(client)
     read_joints(client, robot, numbers, joints)
+    return sum_contact(contact_points(client, robot, floor), left_sole)
+
+
+@njit(cache=True)
+def pulled_tick(
+    client: int,
+    robot: int,
+    floor: int,
+    left_sole: int,
+    numbers: Any,
+    torques: Any,
+    joints: Any,
+) -> tuple[float, float, float, float, float]:
+    """Pull, step and read; torques are those pulled by."""
+    pull_joints(client, robot, numbers, torques)
+    step_physics(client)
+    read_joints(client, robot, numbers, joints)
+    joints[2 * _N_JOINTS :] = torques
     return sum_contact(contact_points(client, robot, floor), left_sole)
 
 

@@ -25,7 +25,7 @@ class Engine(NamedTuple):
 
 ENGINES: Final = {
     "pybullet": Engine(
-        "sim_node.pybullet_world", "PyBulletWorld", servos=("ideal", "lag")
+        "sim_node.pybullet_world", "PyBulletWorld", servos=("ideal", "lag", "pid")
     ),
     "mujoco": Engine(
         "sim_node.mujoco_world",

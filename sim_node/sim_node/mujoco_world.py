@@ -22,7 +22,7 @@ from biped_description.robot import Robot
 from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
 from sim_node.physics import Array, Physics, Vector, WaistState
-from sim_node.servo import IDEAL_SERVO, ServoSettings
+from sim_node.servo import IDEAL_SERVO, PidServos, ServoSettings
 
 _N_JOINTS: Final = len(JOINT_NAMES)
 _KEPT: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -47,10 +47,12 @@ class MuJoCoWorld(Physics):
     ) -> None:
         """Build the model, with the robot standing at the origin."""
         self._model = model = _model(robot, friction)
-        self._torque_limits_nm = torque_limits_nm
         self._servo = servo
         self._pulls = servo.kind == "pid"
         self._data = mujoco.MjData(model)
+        # The state of the engine keeps what the servos remember.
+        remembered = self._data.userdata.reshape(2, _N_JOINTS)
+        self._pid = PidServos(servo, torque_limits_nm, remembered)
         self._torso = model.body(TORSO).id
         self._links = np.array([model.body(name).id for name in LINK_NAMES])
         self._left_sole = int(model.body_geomadr[model.body(CONTACT_LINKS[0]).id])
@@ -150,22 +152,11 @@ class MuJoCoWorld(Physics):
     # -- servos and soles ----------------------------------------------------------
 
     def _pull(self, q: Array, dq: Array) -> None:
-        """Let PID servos pull; with a delay, as they would have a tick ago.
-
-        The state of the engine keeps the torques that a delay holds back, and behind
-        them the integrals [rad].
-        """
-        data, servo = self._data, self._servo
-        late, integral = data.userdata[:_N_JOINTS], data.userdata[_N_JOINTS:]
+        """Let PID servos pull."""
+        data = self._data
         position = q - data.qpos[self._positions]
         velocity = dq - data.qvel[self._dofs]
-        grown = integral + servo.integral_per_s * CONTROL_PERIOD_S * position
-        wanted = servo.stiffness_nm_rad * (position + grown)
-        wanted += servo.damping_nm_s_rad * velocity
-        torques = np.clip(wanted, -self._torque_limits_nm, self._torque_limits_nm)
-        data.qfrc_applied[self._dofs] = late if servo.delay_ticks else torques
-        late[:] = torques
-        integral[:] = np.where(torques == wanted, grown, integral)
+        data.qfrc_applied[self._dofs] = self._pid.pull(position, velocity)
 
     def _ask_servos(self, q: Array, dq: Array) -> slice:
         """Ask for the velocities that lead to the next references, or for standstill.
@@ -230,7 +221,7 @@ def _model(robot: Robot, friction: float) -> mujoco.MjModel:
     options.tolerance = 1e-14
     # The robot's own limits of motion end a walk; no joint has a stop.
     options.disableflags |= mujoco.mjtDisableBit.mjDSBL_LIMIT
-    spec.nuserdata = 2 * _N_JOINTS  # of PID servos; see _pull
+    spec.nuserdata = 2 * _N_JOINTS  # of PID servos
     spec.body(TORSO).add_freejoint()
     floor = spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0.0, 0.0, 1.0)

@@ -26,28 +26,24 @@ from sim_node.bullet_api import (
     WORLD_FRAME,
     api,
 )
-from sim_node.bullet_kernels import NUMBER, U_INDEX, read_base, tick, waist_state
+from sim_node.bullet_kernels import (
+    NUMBER,
+    U_INDEX,
+    pulled_tick,
+    read_base,
+    read_joints,
+    tick,
+    waist_state,
+)
+from sim_node.bullet_rotors import JointInfo, gear_rotors, with_rotors
 from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
 from sim_node.physics import Array, Physics, Vector, WaistState
 from sim_node.quiet import engine_chatter_dropped
-from sim_node.servo import IDEAL_SERVO, ServoSettings
+from sim_node.servo import IDEAL_SERVO, PidServos, ServoSettings
 
 _BASE_LINK = -1
-
-
-class _JointInfo(ctypes.Structure):
-    """The head of the API's b3JointInfo."""
-
-    _fields_ = (
-        ("link_name", ctypes.c_char * 1024),
-        ("joint_name", ctypes.c_char * 1024),
-        ("joint_type", ctypes.c_int),
-        ("q_index", ctypes.c_int),
-        ("u_index", ctypes.c_int),
-        ("number", ctypes.c_int),
-        ("rest", ctypes.c_byte * 1024),
-    )
+_N_JOINTS = len(JOINT_NAMES)
 
 
 class PyBulletWorld(Physics):
@@ -65,9 +61,13 @@ class PyBulletWorld(Physics):
         with engine_chatter_dropped():
             self._set_engine_parameters()
         self.floor = self._make_floor()
-        self.robot = self._load_robot(robot)
+        self._pulls = servo.kind == "pid"
+        urdf, parts = robot.urdf, _N_JOINTS
+        if self._pulls:
+            urdf, parts = with_rotors(urdf, servo.rotor_inertia_kg_m2), 2 * parts
+        self.robot = self._load_robot(urdf, robot.settings.stretched_leg_length_m)
         self._torso_com_height_m = robot.settings.torso_com_height_m
-        infos = [self._joint_info(number) for number in range(len(JOINT_NAMES))]
+        infos = [self._joint_info(number) for number in range(parts)]
         joints = {info.joint_name.decode(): info for info in infos}
         ordered = [joints[name] for name in JOINT_NAMES]
         self.joint_numbers = np.array(
@@ -88,10 +88,17 @@ class PyBulletWorld(Physics):
         # The API multiplies the coefficients of the two bodies; the floor's is 1.
         for sole in (self.left_sole, self.right_sole):
             self._set_friction(self.robot, sole, friction)
-        self._disable_default_motors()
+        self._moving = [info.number for info in infos]
+        self._brake([info.u_index for info in infos], 0.0)
+        if self._pulls:
+            numbers = {name: info.number for name, info in joints.items()}
+            gear_rotors(self.client, self.robot, numbers)
+            self._brake(self.joint_numbers[U_INDEX].tolist(), servo.friction_nm)
         self.torque_limits_nm = torque_limits_nm
         self.servo_shares = np.array(servo.shares)
-        self._kept: set[int] = set()
+        self._remembered = np.zeros((2, _N_JOINTS))
+        self._pid = PidServos(servo, torque_limits_nm, self._remembered)
+        self._kept: dict[int, Array] = {}
 
     def set_mass_factors(self, factors: Array) -> None:
         """Scale the nominal mass and inertia of the (13,) links."""
@@ -119,12 +126,15 @@ class PyBulletWorld(Physics):
         api.b3CreatePoseCommandSetBaseLinearVelocity(command, at_rest)
         api.b3CreatePoseCommandSetBaseAngularVelocity(command, at_rest)
         self._submit(command)
-        for joint, position in zip(self._links[1:], q.tolist(), strict=True):
+        positions = dict(zip(self._links[1:], q.tolist(), strict=True))
+        for part in self._moving:
             command = api.b3CreatePoseCommandInit(self.client, self.robot)
-            of_joint = self.client, command, joint
-            api.b3CreatePoseCommandSetJointPosition(*of_joint, position)
-            api.b3CreatePoseCommandSetJointVelocity(*of_joint, 0.0)
+            of_part = self.client, command, part
+            at = positions.get(part, 0.0)  # of a rotor it does not matter
+            api.b3CreatePoseCommandSetJointPosition(*of_part, at)
+            api.b3CreatePoseCommandSetJointVelocity(*of_part, 0.0)
             self._submit(command)
+        self._remembered[:] = 0.0
 
     def push(self, force_n: Vector) -> None:
         """Push the torso at its CoM during the next control tick."""
@@ -143,6 +153,8 @@ class PyBulletWorld(Physics):
 
     def step(self, q: Array, dq: Array, joints: Array) -> FloorContact:
         """Drive the joints for one control tick, and read the sensors."""
+        if self._pulls:
+            return self._pull(q, dq, joints)
         return FloorContact(
             *tick(
                 self.client,
@@ -154,6 +166,23 @@ class PyBulletWorld(Physics):
                 self.servo_shares,
                 q,
                 dq,
+                joints,
+            )
+        )
+
+    def _pull(self, q: Array, dq: Array, joints: Array) -> FloorContact:
+        """Let PID servos pull for one control tick, and read the sensors."""
+        now = np.empty(3 * _N_JOINTS)
+        read_joints(self.client, self.robot, self.joint_numbers, now)
+        position, velocity, _ = now.reshape(3, _N_JOINTS)
+        return FloorContact(
+            *pulled_tick(
+                self.client,
+                self.robot,
+                self.floor,
+                self.left_sole,
+                self.joint_numbers,
+                self._pid.pull(q - position, dq - velocity),
                 joints,
             )
         )
@@ -180,7 +209,7 @@ class PyBulletWorld(Physics):
         """Keep the present state in memory; return its handle."""
         status = self._submit(api.b3SaveStateCommandInit(self.client))
         handle: int = api.b3GetStatusGetStateId(status)
-        self._kept.add(handle)
+        self._kept[handle] = self._remembered.copy()
         return handle
 
     def load(self, handle: int) -> None:
@@ -190,10 +219,11 @@ class PyBulletWorld(Physics):
         command = api.b3LoadStateCommandInit(self.client)
         api.b3LoadStateSetStateId(command, handle)
         self._submit(command)
+        self._remembered[:] = self._kept[handle]
 
     def release(self, handle: int) -> None:
         """Forget a kept state."""
-        self._kept.discard(handle)
+        self._kept.pop(handle, None)
         self._submit(api.b3InitRemoveStateCommand(self.client, handle))
 
     def close(self) -> None:
@@ -235,20 +265,19 @@ class PyBulletWorld(Physics):
         self._set_friction(floor, _BASE_LINK, 1.0)
         return floor
 
-    def _load_robot(self, robot: Robot) -> int:
+    def _load_robot(self, urdf: str, height_m: float) -> int:
         # The API reads files only.
         with NamedTemporaryFile(mode="w", suffix=".urdf", encoding="utf-8") as file:
-            file.write(robot.urdf)
+            file.write(urdf)
             file.flush()
             command = api.b3LoadUrdfCommandInit(self.client, file.name.encode())
             api.b3LoadUrdfCommandSetFlags(command, USE_INERTIA_FROM_FILE)
-            height = robot.settings.stretched_leg_length_m
-            api.b3LoadUrdfCommandSetStartPosition(command, 0.0, 0.0, height)
+            api.b3LoadUrdfCommandSetStartPosition(command, 0.0, 0.0, height_m)
             loaded: int = api.b3GetStatusBodyIndex(self._submit(command))
         return loaded
 
     def _joint_info(self, joint: int) -> Any:
-        info = _JointInfo()
+        info = JointInfo()
         api.b3GetJointInfo(self.client, self.robot, joint, ctypes.addressof(info))
         return info
 
@@ -277,14 +306,15 @@ class PyBulletWorld(Physics):
         api.b3ChangeDynamicsInfoSetLateralFriction(command, body, link, lateral)
         self._submit(command)
 
-    def _disable_default_motors(self) -> None:
-        """Take away the velocity motors that would brake every joint."""
+    def _brake(self, u_indices: list[int], torque_nm: float) -> None:
+        """Let joints' motors brake by so much; they brake by default."""
         command = api.b3JointControlCommandInit2(
             self.client, self.robot, VELOCITY_CONTROL
         )
-        for u_index in self.joint_numbers[U_INDEX].tolist():
+        for u_index in u_indices:
             api.b3JointControlSetDesiredVelocity(command, u_index, 0.0)
-            api.b3JointControlSetMaximumForce(command, u_index, 0.0)
+            api.b3JointControlSetKd(command, u_index, 1.0)
+            api.b3JointControlSetMaximumForce(command, u_index, torque_nm)
         self._submit(command)
 
 

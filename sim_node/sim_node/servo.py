@@ -15,12 +15,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from biped_common.settings import Settings, SettingsError, setting
 from biped_common.timing import CONTROL_PERIOD_S
+
+Array: TypeAlias = NDArray[np.float64]
 
 
 class ServoShares(NamedTuple):
@@ -104,6 +107,42 @@ class ServoSettings(Settings):
                 f"integral_per_s = {self.integral_per_s}, "
                 f"rotor_inertia_kg_m2 = {inertia}, delay_ticks = {self.delay_ticks}",
             )
+
+
+class PidServos:
+    """PID servos of some joints: the torques by which they pull, tick by tick."""
+
+    def __init__(
+        self, servo: ServoSettings, torque_limits_nm: Array, kept: Array
+    ) -> None:
+        """Keep all that they remember in `kept`.
+
+        Args:
+            servo: their constants.
+            torque_limits_nm: one a joint.
+            kept: (2, joints), zeros at rest: torques that a delay holds back [N m],
+                integrals [rad].
+        """
+        self._servo = servo
+        self._limits_nm = torque_limits_nm
+        self._kept = kept
+
+    def pull(self, position_rad: Array, velocity_rad_s: Array) -> Array:
+        """Return the torques of a tick [N m]; with a delay, those of a tick ago.
+
+        Args:
+            position_rad: errors to the references, one a joint.
+            velocity_rad_s: and those of the velocities.
+        """
+        servo, (late, integral) = self._servo, self._kept
+        grown = integral + servo.integral_per_s * CONTROL_PERIOD_S * position_rad
+        wanted = servo.stiffness_nm_rad * (position_rad + grown)
+        wanted += servo.damping_nm_s_rad * velocity_rad_s
+        torques = np.clip(wanted, -self._limits_nm, self._limits_nm)
+        pulled: Array = late.copy() if servo.delay_ticks else torques
+        late[:] = torques
+        integral[:] = np.where(torques == wanted, grown, integral)
+        return pulled
 
 
 IDEAL_SERVO = ServoSettings()

@@ -17,6 +17,7 @@ from sim_node.settings import SimSettings
 DT_S = 0.002
 STURDY = {"zmp_error_m": 1.0}
 LAGGING = [name for name, engine in ENGINES.items() if "lag" in engine.servos]
+PULLING = [name for name, engine in ENGINES.items() if "pid" in engine.servos]
 IN_THE_AIR = np.array([0.0, 0.0, 3.0])
 
 
@@ -100,8 +101,11 @@ def test_engines_lag_alike(driven, static_walk):
 # -- pid -------------------------------------------------------------------------------
 
 
-def test_a_pid_servo_gives_way_by_its_torque_over_its_stiffness(driven, static_walk):
-    robot, ticks = driven("mujoco", kind="pid", friction_nm=0.0, integral_per_s=0.0)
+@pytest.mark.parametrize("engine", PULLING)
+def test_a_pid_servo_gives_way_by_its_torque_over_its_stiffness(
+    driven, static_walk, engine
+):
+    robot, ticks = driven(engine, kind="pid", friction_nm=0.0, integral_per_s=0.0)
     robot.begin_walk(1)
     follow(robot, static_walk[:1])
     tick = ticks[-1]
@@ -110,20 +114,22 @@ def test_a_pid_servo_gives_way_by_its_torque_over_its_stiffness(driven, static_w
     assert np.abs(error).max() > 1e-4
 
 
-def test_an_integral_takes_back_what_a_servo_gave_way(driven, static_walk):
+@pytest.mark.parametrize("engine", PULLING)
+def test_an_integral_takes_back_what_a_servo_gave_way(driven, static_walk, engine):
     errors = []
     for integral_per_s in (0.0, 3.0):
-        robot, ticks = driven("mujoco", kind="pid", integral_per_s=integral_per_s)
+        robot, ticks = driven(engine, kind="pid", integral_per_s=integral_per_s)
         robot.begin_walk(1)
         follow(robot, static_walk[:100])
         errors.append(worst_error_rad(ticks[-10:]))  # on one foot
     assert errors[1] < 0.3 * errors[0]
 
 
-def test_an_integral_stands_still_while_the_torque_is_at_its_limit(driven):
+@pytest.mark.parametrize("engine", PULLING)
+def test_an_integral_stands_still_while_the_torque_is_at_its_limit(driven, engine):
     pulled = []
     for integral_per_s in (0.0, 3.0):
-        robot, _ = driven("mujoco", kind="pid", integral_per_s=integral_per_s)
+        robot, _ = driven(engine, kind="pid", integral_per_s=integral_per_s)
         world, aim, measured = robot.world, np.full(12, 1.0), np.empty(36)
         world.place(IN_THE_AIR, np.zeros(12))
         for _ in range(5):
@@ -136,8 +142,9 @@ def test_an_integral_stands_still_while_the_torque_is_at_its_limit(driven):
     np.testing.assert_array_equal(*pulled)
 
 
-def test_a_pid_servo_has_no_more_than_its_torque(driven, static_walk):
-    robot, ticks = driven("mujoco", kind="pid")
+@pytest.mark.parametrize("engine", PULLING)
+def test_a_pid_servo_has_no_more_than_its_torque(driven, static_walk, engine):
+    robot, ticks = driven(engine, kind="pid")
     robot.begin_walk(1)
     robot.world.push((3000.0, 0.0, 0.0))
     robot.follow(static_walk[0])
@@ -147,9 +154,47 @@ def test_a_pid_servo_has_no_more_than_its_torque(driven, static_walk):
     assert (torques <= robot.robot.torque_limit_nm).all()
 
 
+@pytest.mark.parametrize("engine", PULLING)
+def test_a_rotor_stands_between_a_torque_and_its_joint(driven, engine):
+    # A knee in the air, pulled at by its servo: without the rotor's inertia the shank
+    # and foot would be thrown.
+    moved = {}
+    for inertia in (0.5, 1.0):
+        robot, _ = driven(
+            engine, kind="pid", rotor_inertia_kg_m2=inertia, friction_nm=0.0
+        )
+        world, aim, measured = robot.world, np.zeros(12), np.empty(36)
+        world.place(IN_THE_AIR, np.zeros(12))
+        aim[3] = 1e-4
+        pulled = 0.0
+        for _ in range(4):
+            world.step(aim, np.zeros(12), measured)
+            pulled += DT_S * measured[24 + 3]
+        moved[inertia] = pulled / measured[12 + 3]
+    # Inertia, as momentum over velocity: half a kg m^2 more is half a kg m^2 more.
+    assert moved[1.0] - moved[0.5] == pytest.approx(0.5, rel=0.02)
+
+
+def test_engines_give_way_alike(driven, static_walk):
+    errors, loads = [], []
+    for engine in PULLING:
+        robot, ticks = driven(engine, kind="pid")
+        robot.begin_walk(1)
+        follow(robot, static_walk[:200])  # a step, and the next foot is down
+        assert len(ticks) == 2000
+        errors.append(
+            [np.subtract(tick.joint_reference, tick.joint_position) for tick in ticks]
+        )
+        loads.append([tick.joint_torque for tick in ticks])
+    for one, other in (errors, loads):
+        apart = np.sqrt(np.mean(np.subtract(one, other) ** 2))
+        assert apart < 0.15 * np.sqrt(np.mean(np.square(one)))
+
+
+@pytest.mark.parametrize("engine", PULLING)
 @pytest.mark.parametrize("delay_ticks", [0, 1])
-def test_a_delay_holds_a_torque_back_for_a_tick(driven, delay_ticks):
-    robot, _ = driven("mujoco", kind="pid", delay_ticks=delay_ticks)
+def test_a_delay_holds_a_torque_back_for_a_tick(driven, delay_ticks, engine):
+    robot, _ = driven(engine, kind="pid", delay_ticks=delay_ticks)
     world, q, measured = robot.world, np.zeros(12), np.empty(36)
     world.place(IN_THE_AIR, q)
     pulled = []
@@ -159,12 +204,13 @@ def test_a_delay_holds_a_torque_back_for_a_tick(driven, delay_ticks):
     assert pulled.index(True) == delay_ticks
 
 
+@pytest.mark.parametrize("engine", PULLING)
 @pytest.mark.parametrize("delay_ticks", [0, 1])
 @pytest.mark.parametrize("kind", ["lag", "pid"])
 def test_a_walk_goes_on_bit_for_bit_from_a_state_kept(
-    driven, static_walk, kind, delay_ticks
+    driven, static_walk, kind, delay_ticks, engine
 ):
-    robot, _ = driven("mujoco", kind=kind, delay_ticks=delay_ticks)
+    robot, _ = driven(engine, kind=kind, delay_ticks=delay_ticks)
     robot.begin_walk(1)
     follow(robot, static_walk[:30])
     kept = robot.snapshot()

@@ -7,30 +7,31 @@ import pytest
 
 from biped_bringup.run_settings import load_settings
 from biped_common.errors import BipedError
-from biped_lab.contestant import NoOptions, entry
+from biped_lab.contestant import entry
 
 SETTINGS = load_settings(changes=("gait.steps=2",))
 PPO = entry("stable_baselines")
+OPTIONS = PPO.options()
 
 
 @pytest.mark.parametrize("missing", ["stable_baselines3", "torch"])
 def test_without_its_extra_the_error_says_which(missing, monkeypatch):
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(BipedError, match=r"^[^\n]*pip install 'biped\[sb3\]'[^\n]*$"):
-        PPO.begin(SETTINGS, NoOptions(), 1)
+        PPO.begin(SETTINGS, OPTIONS, 1)
 
 
 def test_a_resumed_ppo_is_the_uninterrupted_one(tmp_path):
     pytest.importorskip("stable_baselines3")
     file = tmp_path / "ppo.npz"
-    with closing(PPO.begin(SETTINGS, NoOptions(), 1)) as whole:
+    with closing(PPO.begin(SETTINGS, OPTIONS, 1)) as whole:
         for episode in range(30):  # more than the 2,048 decisions of an update
             if episode == 20:
                 whole.save(file)
             whole.episode()
         figures = whole.figures()
         assert {*whole.table()["target_ticks"]} == {SETTINGS.gait.walk_ticks}
-    with closing(PPO.resume(file, SETTINGS, NoOptions(), 1)) as resumed:
+    with closing(PPO.resume(file, SETTINGS, OPTIONS, 1)) as resumed:
         assert resumed.episodes == 20
         for _ in range(10):
             resumed.episode()

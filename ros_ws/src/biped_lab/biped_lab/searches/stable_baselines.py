@@ -1,9 +1,9 @@
 """PPO of Stable-Baselines3 (Raffin et al. 2021), through BipedWaist-v0; extra `sb3`.
 
-No search, but another rival from outside; constants are the library's defaults. It
-gets the inputs in units of the learner's widths, and a reward of 1 per decision that
-did not end the walk by a failure: the task's own comes at the end only, where random
-walks never are. The target is the whole walk from the start.
+No search, but another rival from outside; constants that are no options are the
+library's defaults. It gets the inputs in units of the learner's widths, and a reward of
+1 per decision that did not end the walk by a failure: the task's own comes at the end
+only, where random walks never are. The target is the whole walk from the start.
 
     schedule    the first learning episode that walked the whole walk
     greedy      the first such after which the most likely actions walked it, too
@@ -19,7 +19,7 @@ import hashlib
 import sys
 import threading
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +31,8 @@ from biped_bringup.run_settings import RunSettings
 from biped_bringup.walker import WalkedTicks
 from biped_common.errors import BipedError
 from biped_common.seeds import learner_stream
-from biped_common.settings import to_mapping
-from biped_lab.contestant import Contestant, Entry, NoOptions, log_table
+from biped_common.settings import Settings, setting, to_mapping
+from biped_lab.contestant import Contestant, Entry, log_table
 from biped_lab.waist_env import BipedWaistEnv
 from learner_node.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from learner_node.memory import arrays_sha256
@@ -43,6 +43,14 @@ from msgs_json.observation import Observation
 
 _FLAG = 10.0
 _Step = tuple[NDArray[np.float64], float, bool, bool, dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class PpoOptions(Settings):
+    """Constants of PPO; as by default, they are the library's."""
+
+    learning_rate: float = setting(3e-4, "", "of both networks", above=0.0)
+    decisions: int = setting(2048, "decisions", "from one update to the next", lower=64)
 
 
 class MissingExtraError(BipedError, ImportError):
@@ -140,7 +148,7 @@ class _EpisodeGate(gymnasium.Wrapper[Any, Any, Any, Any]):
 class PpoContestant:
     """Lets PPO learn episode by episode."""
 
-    def __init__(self, settings: RunSettings, seed: int) -> None:
+    def __init__(self, settings: RunSettings, own: PpoOptions, seed: int) -> None:
         """Start from nothing.
 
         Raises:
@@ -168,7 +176,13 @@ class PpoContestant:
         self._gate = _EpisodeGate(self._env)
         (draw,) = learner_stream(seed).generate_state(1)
         self._model = library.PPO(
-            "MlpPolicy", self._gate, seed=int(draw), device="cpu", verbose=0
+            "MlpPolicy",
+            self._gate,
+            learning_rate=own.learning_rate,
+            n_steps=own.decisions,
+            seed=int(draw),
+            device="cpu",
+            verbose=0,
         )
         self._log = EpisodeLog()
         self._trajectories_sha256 = ""
@@ -230,7 +244,9 @@ class PpoContestant:
         write_checkpoint(path, header, self._log.arrays())
 
     @classmethod
-    def resume(cls, path: Path, settings: RunSettings, seed: int) -> PpoContestant:
+    def resume(
+        cls, path: Path, settings: RunSettings, own: PpoOptions, seed: int
+    ) -> PpoContestant:
         """Return the contestant that `save` wrote, learned anew.
 
         Raises:
@@ -238,7 +254,7 @@ class PpoContestant:
             MissingExtraError: Stable-Baselines3 is not installed.
         """
         header, arrays = read_checkpoint(path)
-        contestant = cls(settings, seed)
+        contestant = cls(settings, own, seed)
         for _ in arrays.get("control_ticks", ()):
             contestant.episode()
         if contestant._trajectories_sha256 != header.get("trajectory_sha256"):
@@ -267,12 +283,14 @@ class PpoContestant:
         return result
 
 
-def _begin(settings: RunSettings, _: NoOptions, seed: int) -> Contestant:
-    return PpoContestant(settings, seed)
+def _begin(settings: RunSettings, own: PpoOptions, seed: int) -> Contestant:
+    return PpoContestant(settings, own, seed)
 
 
-def _resume(path: Path, settings: RunSettings, _: NoOptions, seed: int) -> Contestant:
-    return PpoContestant.resume(path, settings, seed)
+def _resume(
+    path: Path, settings: RunSettings, own: PpoOptions, seed: int
+) -> Contestant:
+    return PpoContestant.resume(path, settings, own, seed)
 
 
-ENTRY = Entry(NoOptions, _begin, _resume, __name__)
+ENTRY = Entry(PpoOptions, _begin, _resume, __name__)
