@@ -12,13 +12,14 @@ from biped_lab.robustness import (
     contestants,
     learn,
     search,
+    solve,
 )
 
 SHORT = ("gait.steps=1", "gait.double_support_s=0.9")
 SEED = 71
 
 
-@pytest.fixture(scope="module", params=[learn, search])
+@pytest.fixture(scope="module", params=[learn, search, solve])
 def learned(request):
     settings = changed_settings(load_settings("t_ds_080"), changes=SHORT)
     return request.param(settings, SEED), settings

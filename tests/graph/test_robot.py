@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import math
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import threading
 import time
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -22,8 +24,9 @@ from trajectory_msgs.msg import JointTrajectory
 
 from biped_bringup.run_settings import load_settings
 from biped_bringup.training import TrainingRun
-from biped_common.timing import TICKS_PER_LEARNING_TICK
+from biped_common.timing import CONTROL_PERIOD_NS, TICKS_PER_LEARNING_TICK
 from biped_description.robot import Robot
+from biped_ros.messages import message_type
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
 from sim_node.biped import SimulatedBiped
@@ -192,6 +195,29 @@ def test_a_robot_walks_is_stopped_and_walks_again(new_biped, hardware, person):
     assert biped.execute(next(static)).end_cause is EndCause.SENSORS_SILENT
 
 
+def test_a_reading_that_is_no_number_ends_the_walk(new_biped, hardware, person):
+    biped = new_biped(SHIPPED)
+    readings, publishers = {}, {}
+    for topic in (
+        topics.HARDWARE_JOINTS, topics.HARDWARE_IMU, *topics.HARDWARE_SOLES
+    ):  # fmt: skip
+        name, kind, newest_only = topic.name, message_type(topic), 1
+        take = partial(readings.__setitem__, name)
+        person.node.create_subscription(kind, name, take, newest_only)
+        publishers[name] = person.node.create_publisher(kind, name, 10)
+    assert begin(biped, person, 1).end_cause is None
+    static = segments()
+    assert biped.execute(next(static)).end_cause is None
+    person.last_asked()
+    hardware.send_signal(signal.SIGSTOP)
+    readings[topics.HARDWARE_JOINTS.name].position[3] = math.nan
+    for name, message in readings.items():
+        message.header.stamp.nanosec += CONTROL_PERIOD_NS
+        publishers[name].publish(message)
+    assert biped.execute(next(static)).end_cause is EndCause.SENSORS_INVALID
+    assert_asked_to_stay(person)
+
+
 def test_a_stop_before_a_walk_leads_nowhere(new_biped, hardware, person):
     """Not to where the walk before was led, from which somebody moved the robot."""
     biped = new_biped(SHIPPED, zmp_limit_m=1e-4)
@@ -350,12 +376,18 @@ def test_a_robot_that_does_not_do_what_it_is_sent_is_stopped(
 
 @pytest.mark.thorough
 def test_the_learned_walk_holds_on_the_graph(domain, tmp_path, hardware, person):
-    run = TrainingRun(load_settings("directed", changes=[SENSED]), seed=5)
+    # As docs/real-robot.md has it: learned 3 mm stricter than it is walked.
+    stricter = "sim.limits.zmp_error_m=0.062"
+    run = TrainingRun(load_settings("directed", changes=[SENSED, stricter]), seed=5)
     run.run(200, False, lambda _: True)
     assert run.learned
     run.save(tmp_path / "memory.npz")
     run.close()
-    changes = ("sim.engine=robot", "sim.sensors.timeout_s=3")
+    changes = (
+        "sim.engine=robot",
+        "sim.sensors.timeout_s=3",
+        "sim.limits.zmp_error_m=0.065",
+    )
     up = subprocess.Popen(
         [*COMMAND, "up", "--greedy", "--no-view", "--plain", "--json"]
         + ["--record", "none", "--domain", str(domain), "--out", str(tmp_path)]

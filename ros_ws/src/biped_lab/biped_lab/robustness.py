@@ -6,7 +6,8 @@
 Learns the walk with XoL beyond the paper, with the same but for fixed-mode states, with
 XoL by Strategy 2, and by a search over plans, which answers no observation, on the same
 seeds; undisturbed, or under each disturbance. Then walks what was learned, frozen,
-under each disturbance, some walks per seed. Prints a table in Markdown: how many walks
+under each disturbance, some walks per seed; and so the optimal plan, which is known to
+the one who knows the undisturbed plant. Prints a table in Markdown: how many walks
 were completed, of those whose learning came to its end, and how long learning took.
 """
 
@@ -37,6 +38,7 @@ from biped_common.command_line import positive
 from biped_common.seeds import learner_stream, robot_stream, trial_stream
 from biped_common.settings import to_mapping
 from biped_lab.markdown import Table
+from biped_lab.searches.linear_programming import optimum
 from biped_lab.searches.plan import PlanSpace
 from biped_lab.searches.search_contestant import PlannedWalk
 from biped_lab.searches.searcher import Walked
@@ -101,11 +103,7 @@ def search(settings: RunSettings, seed: int) -> Learned | None:
         np.random.default_rng(stream(seed)) for stream in (learner_stream, robot_stream)
     )
     searcher = TailSearch(TailSearchOptions(), space, searching)
-    whole = replace(
-        settings.learner.schedule, first_target_s=settings.gait.duration_s, run_on=False
-    )
-    learner = replace(settings.learner, schedule=whole)
-    task = WalkTask(learner, settings.gait.walk_ticks)
+    task = whole_walk(settings)
     # Where chance has a part in the walks, none is like another.
     kind = Walker if settings.sim.random else ReplayingWalker
     with closing(kind(settings, disturbing)) as walker:
@@ -118,6 +116,22 @@ def search(settings: RunSettings, seed: int) -> Learned | None:
             cost = math.inf if result.cost is None else result.cost.total
             searcher.tell(Walked(result.control_ticks, result.completed, cost))
     return None
+
+
+def solve(settings: RunSettings, _: int) -> Learned:
+    """Return the optimal plan of the linear model, which is the undisturbed plant's."""
+    space = PlanSpace.of_learning_ticks(settings)
+    chosen = space.nearest(optimum(settings, space).plan_m)
+    return Learned(0, partial(PlannedWalk, whole_walk(settings), space, chosen))
+
+
+def whole_walk(settings: RunSettings) -> WalkTask:
+    """Return the task with the whole walk as its target from the start."""
+    whole = replace(
+        settings.learner.schedule, first_target_s=settings.gait.duration_s, run_on=False
+    )
+    learner = replace(settings.learner, schedule=whole)
+    return WalkTask(learner, settings.gait.walk_ticks)
 
 
 def contestants(
@@ -143,6 +157,7 @@ def contestants(
     yield "the same, no fixed mode", explores, learn
     yield "XoL, Strategy 2, LT = 3", paper, learn
     yield "tail search", beyond, search
+    yield "linear programming", beyond, solve
 
 
 def completed(
@@ -187,8 +202,8 @@ def main() -> int:
         type=positive,
         nargs="+",
         metavar="N",
-        help="only these, of the four: 1 beyond the paper, 2 without fixed mode, "
-        "3 Strategy 2, 4 plan",
+        help="only these, of the five: 1 beyond the paper, 2 without fixed mode, "
+        "3 Strategy 2, 4 plan that was searched, 5 optimal plan",
     )
     parser.add_argument(
         "--while-learning",
