@@ -28,6 +28,33 @@ LCP_DANTZIG: Final[int] = pybullet.CONSTRAINT_SOLVER_LCP_DANTZIG
 USE_INERTIA_FROM_FILE: Final[int] = pybullet.URDF_USE_INERTIA_FROM_FILE
 WORLD_FRAME: Final[int] = pybullet.WORLD_FRAME
 
+
+class JointInfo(ctypes.Structure):
+    """The API's b3JointInfo."""
+
+    _fields_ = (
+        ("link_name", ctypes.c_char * 1024),
+        ("joint_name", ctypes.c_char * 1024),
+        ("joint_type", ctypes.c_int),
+        ("q_index", ctypes.c_int),
+        ("u_index", ctypes.c_int),
+        ("number", ctypes.c_int),
+        ("flags", ctypes.c_int),
+        ("damping", ctypes.c_double),
+        ("friction", ctypes.c_double),
+        ("lower_limit", ctypes.c_double),
+        ("upper_limit", ctypes.c_double),
+        ("max_force", ctypes.c_double),
+        ("max_velocity", ctypes.c_double),
+        ("parent_frame", ctypes.c_double * 7),
+        ("child_frame", ctypes.c_double * 7),
+        ("axis", ctypes.c_double * 3),
+        ("parent", ctypes.c_int),
+        ("q_size", ctypes.c_int),
+        ("u_size", ctypes.c_int),
+    )
+
+
 # Result, then arguments: p pointer or handle, i int, d double, s text, v nothing.
 _SIGNATURES: Final = {
     "b3ConnectPhysicsDirect": "p",

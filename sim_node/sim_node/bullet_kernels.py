@@ -152,6 +152,16 @@ def sum_contact(
 
 
 @njit(cache=True)
+def step_and_read(
+    client: int, robot: int, floor: int, left_sole: int, numbers: Any, joints: Any
+) -> tuple[float, float, float, float, float]:
+    """Go on by one control tick, and read the sensors."""
+    step_physics(client)
+    read_joints(client, robot, numbers, joints)
+    return sum_contact(contact_points(client, robot, floor), left_sole)
+
+
+@njit(cache=True)
 def tick(
     client: int,
     robot: int,
@@ -166,9 +176,7 @@ def tick(
 ) -> tuple[float, float, float, float, float]:
     """Command, step and read; see `Physics.step`."""
     command_servos(client, robot, numbers, torque_limits, shares, q, dq)
-    step_physics(client)
-    read_joints(client, robot, numbers, joints)
-    return sum_contact(contact_points(client, robot, floor), left_sole)
+    return step_and_read(client, robot, floor, left_sole, numbers, joints)
 
 
 @njit(cache=True)
@@ -181,12 +189,14 @@ def pulled_tick(
     torques: Any,
     joints: Any,
 ) -> tuple[float, float, float, float, float]:
-    """Pull, step and read; torques are those pulled by."""
+    """Pull, step and read; see `Physics.step`.
+
+    The torques that are read are the (12,) ones pulled by [N m].
+    """
     pull_joints(client, robot, numbers, torques)
-    step_physics(client)
-    read_joints(client, robot, numbers, joints)
+    contact = step_and_read(client, robot, floor, left_sole, numbers, joints)
     joints[2 * _N_JOINTS :] = torques
-    return sum_contact(contact_points(client, robot, floor), left_sole)
+    return contact
 
 
 @njit(cache=True)

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 from sim_node.errors import EngineMissingError
 from sim_node.physics import Physics
+from sim_node.servo import SERVO_KINDS
 
 
 class Engine(NamedTuple):
@@ -25,13 +26,13 @@ class Engine(NamedTuple):
 
 ENGINES: Final = {
     "pybullet": Engine(
-        "sim_node.pybullet_world", "PyBulletWorld", servos=("ideal", "lag", "pid")
+        "sim_node.pybullet_world", "PyBulletWorld", servos=tuple(SERVO_KINDS)
     ),
     "mujoco": Engine(
         "sim_node.mujoco_world",
         "MuJoCoWorld",
         extra="mujoco",
-        servos=("ideal", "lag", "pid"),
+        servos=tuple(SERVO_KINDS),
     ),
     "kinematic": Engine(
         "sim_node.kinematic_world",

@@ -47,23 +47,23 @@ class MuJoCoWorld(Physics):
     ) -> None:
         """Build the model, with the robot standing at the origin."""
         self._model = model = _model(robot, friction)
-        self._servo = servo
-        self._pulls = servo.kind == "pid"
         self._data = mujoco.MjData(model)
-        # The state of the engine keeps what the servos remember.
-        remembered = self._data.userdata.reshape(2, _N_JOINTS)
-        self._pid = PidServos(servo, torque_limits_nm, remembered)
         self._torso = model.body(TORSO).id
         self._links = np.array([model.body(name).id for name in LINK_NAMES])
         self._left_sole = int(model.body_geomadr[model.body(CONTACT_LINKS[0]).id])
         joints = [model.joint(name) for name in JOINT_NAMES]
         self._positions = np.array([joint.qposadr[0] for joint in joints])
         self._dofs = np.array([joint.dofadr[0] for joint in joints])
-        if self._pulls:
+        self._pid: PidServos | None = None
+        if servo.kind == "pid":
+            # The state of the engine keeps what the servos remember.
+            remembered = self._data.userdata.reshape(2, _N_JOINTS)
+            self._pid = PidServos(servo, torque_limits_nm, remembered)
             model.dof_frictionloss[self._dofs] = servo.friction_nm
             model.dof_armature[self._dofs] = servo.rotor_inertia_kg_m2
             mujoco.mj_setConst(model, mujoco.MjData(model))
         else:
+            self._shares = servo.shares
             # Dry friction that brakes towards a velocity of its own.
             model.dof_frictionloss[self._dofs] = torque_limits_nm
         self._mass = model.body_mass[self._links].copy()
@@ -96,8 +96,11 @@ class MuJoCoWorld(Physics):
         model, data = self._model, self._data
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
-        if self._pulls:
-            self._pull(q, dq)
+        if self._pid:
+            position_error = q - data.qpos[self._positions]
+            velocity_error = dq - data.qvel[self._dofs]
+            pulled = self._pid.pull(position_error, velocity_error)
+            data.qfrc_applied[self._dofs] = pulled
         servos = self._ask_servos(q, dq)
         normals = self._ask_soles()
         mujoco.mj_fwdActuation(model, data)
@@ -106,7 +109,7 @@ class MuJoCoWorld(Physics):
         mujoco.mj_Euler(model, data)
         data.xfrc_applied[self._torso] = 0.0
         torques = data.qfrc_applied.copy()
-        if not self._pulls:
+        if not self._pid:
             torques[data.efc_id[servos]] = data.efc_force[servos]
         joints[:_N_JOINTS] = data.qpos[self._positions]
         joints[_N_JOINTS : 2 * _N_JOINTS] = data.qvel[self._dofs]
@@ -151,13 +154,6 @@ class MuJoCoWorld(Physics):
 
     # -- servos and soles ----------------------------------------------------------
 
-    def _pull(self, q: Array, dq: Array) -> None:
-        """Let PID servos pull."""
-        data = self._data
-        position = q - data.qpos[self._positions]
-        velocity = dq - data.qvel[self._dofs]
-        data.qfrc_applied[self._dofs] = self._pid.pull(position, velocity)
-
     def _ask_servos(self, q: Array, dq: Array) -> slice:
         """Ask for the velocities that lead to the next references, or for standstill.
 
@@ -169,8 +165,8 @@ class MuJoCoWorld(Physics):
         """
         data = self._data
         asked = np.zeros(self._model.nv)
-        if not self._pulls:
-            position, velocity = self._servo.shares
+        if not self._pid:
+            position, velocity = self._shares
             error, now = q - data.qpos[self._positions], data.qvel[self._dofs]
             asked[self._dofs] = velocity * dq + (1.0 - velocity) * now
             asked[self._dofs] += position / CONTROL_PERIOD_S * error

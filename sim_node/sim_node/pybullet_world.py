@@ -24,6 +24,7 @@ from sim_node.bullet_api import (
     USE_INERTIA_FROM_FILE,
     VELOCITY_CONTROL,
     WORLD_FRAME,
+    JointInfo,
     api,
 )
 from sim_node.bullet_kernels import (
@@ -35,7 +36,7 @@ from sim_node.bullet_kernels import (
     tick,
     waist_state,
 )
-from sim_node.bullet_rotors import JointInfo, gear_rotors, with_rotors
+from sim_node.bullet_rotors import gear_rotors, with_rotors
 from sim_node.contact import FloorContact
 from sim_node.errors import SnapshotError
 from sim_node.physics import Array, Physics, Vector, WaistState
@@ -61,9 +62,8 @@ class PyBulletWorld(Physics):
         with engine_chatter_dropped():
             self._set_engine_parameters()
         self.floor = self._make_floor()
-        self._pulls = servo.kind == "pid"
         urdf, parts = robot.urdf, _N_JOINTS
-        if self._pulls:
+        if servo.kind == "pid":
             urdf, parts = with_rotors(urdf, servo.rotor_inertia_kg_m2), 2 * parts
         self.robot = self._load_robot(urdf, robot.settings.stretched_leg_length_m)
         self._torso_com_height_m = robot.settings.torso_com_height_m
@@ -83,21 +83,23 @@ class PyBulletWorld(Physics):
         self.left_sole, self.right_sole = (links[name] for name in CONTACT_LINKS)
         self._links = [_BASE_LINK, *self.joint_numbers[NUMBER].tolist()]
         self._mass_properties = np.array([self._dynamics(link) for link in self._links])
-        for link in self._links:
+        self._moving = [info.number for info in infos]
+        for link in (_BASE_LINK, *self._moving):
             self._take_away_losses(self.robot, link)
         # The API multiplies the coefficients of the two bodies; the floor's is 1.
         for sole in (self.left_sole, self.right_sole):
             self._set_friction(self.robot, sole, friction)
-        self._moving = [info.number for info in infos]
         self._brake([info.u_index for info in infos], 0.0)
-        if self._pulls:
+        self._pid: PidServos | None = None
+        self._remembered = np.zeros((2, _N_JOINTS))  # of PID servos
+        if servo.kind == "pid":
             numbers = {name: info.number for name, info in joints.items()}
             gear_rotors(self.client, self.robot, numbers)
             self._brake(self.joint_numbers[U_INDEX].tolist(), servo.friction_nm)
-        self.torque_limits_nm = torque_limits_nm
-        self.servo_shares = np.array(servo.shares)
-        self._remembered = np.zeros((2, _N_JOINTS))
-        self._pid = PidServos(servo, torque_limits_nm, self._remembered)
+            self._pid = PidServos(servo, torque_limits_nm, self._remembered)
+        else:
+            self.torque_limits_nm = torque_limits_nm
+            self.servo_shares = np.array(servo.shares)
         self._kept: dict[int, Array] = {}
 
     def set_mass_factors(self, factors: Array) -> None:
@@ -153,8 +155,8 @@ class PyBulletWorld(Physics):
 
     def step(self, q: Array, dq: Array, joints: Array) -> FloorContact:
         """Drive the joints for one control tick, and read the sensors."""
-        if self._pulls:
-            return self._pull(q, dq, joints)
+        if self._pid:
+            return self._pull(self._pid, q, dq, joints)
         return FloorContact(
             *tick(
                 self.client,
@@ -170,7 +172,7 @@ class PyBulletWorld(Physics):
             )
         )
 
-    def _pull(self, q: Array, dq: Array, joints: Array) -> FloorContact:
+    def _pull(self, pid: PidServos, q: Array, dq: Array, joints: Array) -> FloorContact:
         """Let PID servos pull for one control tick, and read the sensors."""
         now = np.empty(3 * _N_JOINTS)
         read_joints(self.client, self.robot, self.joint_numbers, now)
@@ -182,7 +184,7 @@ class PyBulletWorld(Physics):
                 self.floor,
                 self.left_sole,
                 self.joint_numbers,
-                self._pid.pull(q - position, dq - velocity),
+                pid.pull(q - position, dq - velocity),
                 joints,
             )
         )
@@ -231,6 +233,7 @@ class PyBulletWorld(Physics):
         if self.client:
             api.b3DisconnectSharedMemory(self.client)
             self.client = 0
+        self._kept.clear()
 
     # -- set-up --------------------------------------------------------------------
 
@@ -307,7 +310,12 @@ class PyBulletWorld(Physics):
         self._submit(command)
 
     def _brake(self, u_indices: list[int], torque_nm: float) -> None:
-        """Let joints' motors brake by so much; they brake by default."""
+        """Let joints' motors brake by so much; they brake by default.
+
+        Unless told otherwise, the API has a motor take a tenth of the velocity that it
+        lacks: a brake then asks for nine tenths of what there is, and drives a joint on
+        that something else would stop. A walk on such brakes shakes.
+        """
         command = api.b3JointControlCommandInit2(
             self.client, self.robot, VELOCITY_CONTROL
         )

@@ -14,8 +14,8 @@ load until its integral has grown.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from dataclasses import dataclass, fields
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,20 @@ from biped_common.settings import Settings, SettingsError, setting
 from biped_common.timing import CONTROL_PERIOD_S
 
 Array: TypeAlias = NDArray[np.float64]
+
+SERVO_KINDS: Final = {
+    "ideal": (),
+    "lag": ("bandwidth_hz",),
+    "pid": (
+        "stiffness_nm_rad",
+        "damping_nm_s_rad",
+        "integral_per_s",
+        "rotor_inertia_kg_m2",
+        "friction_nm",
+        "delay_ticks",
+    ),
+}
+"""The settings that each kind of servo has."""
 
 
 class ServoShares(NamedTuple):
@@ -41,7 +55,7 @@ class ServoSettings(Settings):
         "ideal",
         "",
         "ideal: on its reference; lag: follows it; pid: gives way to the load, too",
-        choices=("ideal", "lag", "pid"),
+        choices=tuple(SERVO_KINDS),
     )
     bandwidth_hz: float = setting(
         10.0, "Hz", "of lag, critically damped", above=0.0, upper=250.0
@@ -80,15 +94,23 @@ class ServoSettings(Settings):
         return ServoShares((1.0 - p) ** 2, 1.0 - p**2)
 
     def check_together(self) -> None:
-        """Refuse gains of pid that are unstable at 2 ms.
+        """Refuse what has no effect, and gains of pid that are unstable at 2 ms.
 
-        They are judged on a rotor alone, which no mode of the robot has less inertia
+        These are judged on a rotor alone, which no mode of the robot has less inertia
         than. With gains K, D and R per tick, it moves by
 
             z^delay (z - 1)^2 + D (z - 1) + K z (1 + R z / (z - 1)) = 0.
 
         What an integral does to the whole robot, which is heavier, is not asked.
         """
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if (
+                each.name not in ("kind", *SERVO_KINDS[self.kind])
+                and value != each.default
+            ):
+                reason = f"has no effect with kind = {self.kind}"
+                raise SettingsError(each.name, value, reason)
         if self.kind != "pid":
             return
         inertia = self.rotor_inertia_kg_m2
@@ -120,24 +142,24 @@ class PidServos:
         Args:
             servo: their constants.
             torque_limits_nm: one a joint.
-            kept: (2, joints), zeros at rest: torques that a delay holds back [N m],
-                integrals [rad].
+            kept: (2, joints), zeros at rest: torques that a delay holds back [N m]
+                and integrals [rad].
         """
         self._servo = servo
         self._limits_nm = torque_limits_nm
         self._kept = kept
 
-    def pull(self, position_rad: Array, velocity_rad_s: Array) -> Array:
-        """Return the torques of a tick [N m]; with a delay, those of a tick ago.
+    def pull(self, position_error_rad: Array, velocity_error_rad_s: Array) -> Array:
+        """Return the (joints,) torques of a tick [N m]; with a delay, of the last one.
 
         Args:
-            position_rad: errors to the references, one a joint.
-            velocity_rad_s: and those of the velocities.
+            position_error_rad: (joints,) reference less position.
+            velocity_error_rad_s: (joints,)
         """
         servo, (late, integral) = self._servo, self._kept
-        grown = integral + servo.integral_per_s * CONTROL_PERIOD_S * position_rad
-        wanted = servo.stiffness_nm_rad * (position_rad + grown)
-        wanted += servo.damping_nm_s_rad * velocity_rad_s
+        grown = integral + servo.integral_per_s * CONTROL_PERIOD_S * position_error_rad
+        wanted = servo.stiffness_nm_rad * (position_error_rad + grown)
+        wanted += servo.damping_nm_s_rad * velocity_error_rad_s
         torques = np.clip(wanted, -self._limits_nm, self._limits_nm)
         pulled: Array = late.copy() if servo.delay_ticks else torques
         late[:] = torques

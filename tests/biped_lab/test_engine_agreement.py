@@ -48,6 +48,12 @@ def test_walks_are_compared_as_far_as_they_are_alike_and_as_far_as_both_go():
     assert found.zmp_rms_m == pytest.approx(np.sqrt((0.003**2 + 0.004**2) / 2))
 
 
+def test_walks_that_begin_with_other_motions_are_never_alike():
+    q, zmp_m = np.zeros((5, 12)), np.zeros((5, 2))
+    found = agreement(greedy(zmp_m, q), greedy(zmp_m + 0.001, q + 0.1))
+    assert (found.alike_s, found.zmp_rms_alike_m) == (0.0, 0.0)
+
+
 def test_the_table_has_a_row_per_memory(memory, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["engine_agreement", str(memory)])
     assert main() == 0

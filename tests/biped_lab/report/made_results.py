@@ -35,6 +35,8 @@ class MadeRun:
     episodes: int | None
     fixed: float | None = 0.5
     """Share of fixed states at the end; None: a learner without states."""
+    frozen: bool = True
+    """Its frozen walk was completed."""
 
     @property
     def address(self) -> str:
@@ -97,6 +99,7 @@ def _row(run: MadeRun) -> dict[str, Any]:
     row: dict[str, Any] = {
         "arm": run.arm, "seed": run.seed, "address": run.address,
         "state": "unfinished", "episodes": 7, "reached": False, "time": np.nan,
+        "greedy": None,
         "simulated_s": np.nan, "evaluation_s": np.nan, "basis_states": np.nan,
         "fixed_states": np.nan, "penalty_states": np.nan, "computed_s": 1.0,
         "replayed_s": 0.0, "cpu_s": 1.0, "sittings": 1, "trajectory_sha256": "",
@@ -109,6 +112,7 @@ def _row(run: MadeRun) -> dict[str, Any]:
     return row | {
         "state": "finished", "episodes": run.episodes,
         "reached": run.episodes < BOUND, "time": float(run.episodes),
+        "greedy": run.episodes if run.frozen and run.episodes < BOUND else None,
         "simulated_s": simulated_s, "evaluation_s": 3.0, "computed_s": simulated_s / 2,
         "trajectory_sha256": "ab" * 32, **states,
     }  # fmt: skip

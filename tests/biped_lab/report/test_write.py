@@ -4,7 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.biped_lab.report.made_results import STRATEGY_1, made_results, runs_of
+from tests.biped_lab.report.made_results import (
+    BOUND,
+    STRATEGY_1,
+    MadeRun,
+    made_results,
+    runs_of,
+)
 
 from biped_lab.report.finished import finished_runs
 from biped_lab.report.tables import arms_table, cost_table
@@ -129,6 +135,29 @@ def test_every_test_of_an_arm_is_shown(page: Path) -> None:
     ]  # fmt: skip
     pairs = [row.split("|")[4].strip() for row in table[2:]]
     assert pairs == ["5", "5", "0"]  # none with itself
+
+
+def test_frozen_walks_of_the_runs_at_the_goal_are_counted_and_compared(
+    tmp_path: Path,
+) -> None:
+    runs = [
+        *(MadeRun("K = 3", seed, 9 + seed) for seed in range(8)),
+        *(MadeRun("K = none", seed, 20, frozen=seed == 0) for seed in range(7)),
+        MadeRun("K = none", 7, BOUND),  # not at the goal
+    ]
+    folder = write_report(made_results(tmp_path, runs)).parent
+
+    def cells(file: str) -> dict[str, list[str]]:
+        lines = (folder / file).read_text().splitlines()[2:]
+        rows = ([cell.strip() for cell in line.split("|")] for line in lines)
+        return {row[1]: row for row in rows}
+
+    walked, tests = cells("table.md"), cells("tests.md")
+    assert walked["K = 3"][4] == "8 of 8 [0.68, 1.00]"
+    assert walked["K = none"][4] == "1 of 7 [0.03, 0.51]"
+    # Of the ways to have 9 walk among 15, 7 are as far apart, and none farther.
+    assert float(tests["K = 3"][-2]) == pytest.approx(7 / 5005, rel=0.05)
+    assert tests["K = none"][-2] == "–"
 
 
 def test_without_comparisons_there_are_no_tests(tmp_path: Path) -> None:

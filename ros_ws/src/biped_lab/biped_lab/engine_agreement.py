@@ -86,7 +86,7 @@ def agreement(one: GreedyWalk, other: GreedyWalk) -> Agreement:
     squares = ((one.zmp_m[:ticks] - other.zmp_m[:ticks]) ** 2).sum(axis=1)
     return Agreement(
         alike_s=seconds(alike),
-        zmp_rms_alike_m=float(np.sqrt(squares[:alike].mean())),
+        zmp_rms_alike_m=float(np.sqrt(squares[:alike].mean())) if alike else 0.0,
         zmp_rms_m=float(np.sqrt(squares.mean())),
     )
 

@@ -199,7 +199,8 @@ def main() -> int:
     )
     parser.add_argument(
         "--columns",
-        type=positive,
+        type=int,
+        choices=range(1, 6),
         nargs="+",
         metavar="N",
         help="only these, of the five: 1 beyond the paper, 2 without fixed mode, "

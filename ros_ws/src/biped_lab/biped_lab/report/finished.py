@@ -47,6 +47,17 @@ class FinishedRuns:
         return [self.tables[address] for address in self.of(arm)["address"]]
 
     @property
+    def tries_frozen_walks(self) -> bool:
+        """Whether a frozen walk, tried once at a run's end, is not the goal itself."""
+        return self.results.study.goal == "schedule"
+
+    def frozen_walks(self, arm: str) -> tuple[int, int]:
+        """Return how many frozen walks were completed, of the runs at the goal."""
+        runs = self.of(arm)
+        at_goal = runs[runs["reached"]]
+        return int(at_goal["greedy"].notna().sum()), len(at_goal)
+
+    @property
     def fixing_arms(self) -> tuple[str, ...]:
         """Arms in which a state was ever fixed."""
         return tuple(

@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 import pandas as pd
+from scipy.stats import fisher_exact
 
 from biped_lab.markdown import Table
 from biped_lab.report.estimates import compared, ratio_of_means, restricted_mean
 from biped_lab.report.finished import EPISODES, FIXED_SHARE, SIMULATED, FinishedRuns
 from biped_lab.results import ResultsError, StudyResults
-from biped_lab.statistics.censored import Estimate
+from biped_lab.statistics.censored import Estimate, proportion
 from biped_lab.statistics.comparison import compare
 from biped_lab.statistics.permutation import holm
 
@@ -53,12 +54,14 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
         found, rng = statistics.loc[arm], np.random.default_rng(draws)
         mean_episodes = restricted_mean(finished, arm, EPISODES, rng)
         mean_s = restricted_mean(finished, arm, SIMULATED, rng)
+        frozen = (_frozen_walks(finished, arm),) if finished.tries_frozen_walks else ()
         share = restricted_mean(finished, arm, FIXED_SHARE, rng)
         rows.append(
             (
                 arm,
                 str(int(found["n"])),
                 str(int(finished.of(arm)["reached"].sum())),
+                *frozen,
                 _text(_of(found, "median"), "{:.0f}"),
                 _text(mean_episodes, "{:.0f}"),
                 _text(mean_s, "{:.0f}"),
@@ -72,9 +75,10 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
             )
         )
     head = (
-        "arm", "runs", "at the goal", "median [episodes]", "mean [episodes]",
-        "mean [s simulated]", "with restarts [episodes]", "scatter", "compared with",
-        "ratio of medians", "P(faster)", "p (Holm)", "fixed / NB",
+        "arm", "runs", "at the goal", *("frozen walk",)[: finished.tries_frozen_walks],
+        "median [episodes]", "mean [episodes]", "mean [s simulated]",
+        "with restarts [episodes]", "scatter", "compared with", "ratio of medians",
+        "P(faster)", "p (Holm)", "fixed / NB",
     )  # fmt: skip
     return Table(head, tuple(rows))
 
@@ -96,15 +100,37 @@ def comparisons_table(finished: FinishedRuns, rng: np.random.Generator) -> Table
                 _number(found[p], "{:.2g}")
                 for p in ("p_wilcoxon", "p_paired", "p_logrank", "p_rmst")
             ),
+            *([_p_frozen(finished, arm)] if finished.tries_frozen_walks else []),
         )
         for arm, found in statistics.iterrows()
     ]
     head = (
         "arm", "compared with", "at the goal [ ]", "seeds in both",
         "difference of means [episodes]", "p, Wilcoxon", "p, Wilcoxon within pairs",
-        "p, log-rank", "p, mean",
+        "p, log-rank", "p, mean", *("p, frozen walks",)[: finished.tries_frozen_walks],
     )  # fmt: skip
     return Table(head, tuple(rows))
+
+
+def _frozen_walks(finished: FinishedRuns, arm: str) -> str:
+    """Return how many frozen walks of an arm were completed."""
+    walked, runs = finished.frozen_walks(arm)
+    if not runs:
+        return NOTHING
+    share = proportion(walked, runs)
+    return f"{walked} of {runs} [{share.low:.2f}, {share.high:.2f}]"
+
+
+def _p_frozen(finished: FinishedRuns, arm: str) -> str:
+    """Return the p-value of Fisher's exact test against the arm's rival."""
+    rival = finished.arrangement.rivals[arm]
+    if rival is None or rival == arm or rival not in finished.arms:
+        return NOTHING
+    table = [
+        (walked, runs - walked)
+        for walked, runs in map(finished.frozen_walks, (arm, rival))
+    ]
+    return _number(float(fisher_exact(table).pvalue), "{:.2g}")
 
 
 def studies_table(

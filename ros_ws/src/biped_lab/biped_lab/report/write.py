@@ -113,14 +113,17 @@ _ARMS_NOTE = (
     "brackets: 95 % intervals, with fewer than five runs in an arm none. The ratio of "
     "medians and the probability of being faster are of episodes, against the arm in "
     "the column before them; p: permutation test of Wilcoxon scores, corrected after "
-    "Holm for all comparisons of the study. ∞: beyond what was watched."
+    "Holm for all comparisons of the study. Frozen walk: of the runs at the goal, "
+    "those whose greedy walk of the whole way, tried once without learning, was "
+    "completed, with Wilson's interval. ∞: beyond what was watched."
 )
 
 
 _COMPARISONS_NOTE = (
     "The fraction of runs at the goal, with Wilson's interval. Permutation tests, none "
     "corrected: that of Wilcoxon scores judges, the others are there to be looked at. "
-    "Within pairs: of the seeds that both arms have. Means are restricted to the bound."
+    "Within pairs: of the seeds that both arms have. Means are restricted to the "
+    "bound. Frozen walks: Fisher's exact test."
 )
 
 

@@ -165,6 +165,7 @@ class PpoContestant:
             ) from None
         torch.set_num_threads(1)
         self.settings = settings
+        self.options = own
         self.ticks = WalkedTicks()
         self.cpu_s = 0.0
         self._env = BipedWaistEnv(settings=to_mapping(settings))
@@ -239,6 +240,7 @@ class PpoContestant:
         """Write atomically how far it has come; the way there is learned anew."""
         header = {
             "settings": to_mapping(self.settings),
+            "options": to_mapping(self.options),
             "trajectory_sha256": self._trajectories_sha256,
         }
         write_checkpoint(path, header, self._log.arrays())
@@ -250,16 +252,23 @@ class PpoContestant:
         """Return the contestant that `save` wrote, learned anew.
 
         Raises:
-            CheckpointError: the file is no checkpoint, or the same was not learned.
+            CheckpointError: the file is no checkpoint, or of another PPO, or the same
+                was not learned.
             MissingExtraError: Stable-Baselines3 is not installed.
         """
         header, arrays = read_checkpoint(path)
+        for name, now in (("settings", settings), ("options", own)):
+            if header.get(name) != to_mapping(now):
+                raise CheckpointError(f"{path}: it has other {name}")
         contestant = cls(settings, own, seed)
-        for _ in arrays.get("control_ticks", ()):
-            contestant.episode()
-        if contestant._trajectories_sha256 != header.get("trajectory_sha256"):
+        try:
+            for _ in arrays.get("control_ticks", ()):
+                contestant.episode()
+            if contestant._trajectories_sha256 != header.get("trajectory_sha256"):
+                raise CheckpointError(f"{path}: learned anew, the walks are others")
+        except BaseException:
             contestant.close()
-            raise CheckpointError(f"{path}: learned anew, the walks are others")
+            raise
         return contestant
 
     def close(self) -> None:

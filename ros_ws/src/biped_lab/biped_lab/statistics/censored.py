@@ -90,15 +90,15 @@ def reached_curve(times: CensoredTimes) -> pd.DataFrame:
         {
             "episode": fit.survival_function_.index.to_numpy(),
             "reached": share,
-            "low": np.where(every, _wilson(n, n).low, 1 - not_yet.iloc[:, 1]),
-            "high": np.where(none, _wilson(0, n).high, 1 - not_yet.iloc[:, 0]),
+            "low": np.where(every, proportion(n, n).low, 1 - not_yet.iloc[:, 1]),
+            "high": np.where(none, proportion(0, n).high, 1 - not_yet.iloc[:, 0]),
         }
     )
 
 
 def completed(times: CensoredTimes) -> Estimate:
     """Return the fraction of runs that succeeded at all, with Wilson's interval."""
-    return _wilson(int(times.reached.sum()), len(times))
+    return proportion(int(times.reached.sum()), len(times))
 
 
 def median(times: CensoredTimes) -> Estimate:
@@ -178,7 +178,8 @@ def scatter(times: CensoredTimes) -> float:
     return float(np.log(times.time[times.reached]).std(ddof=1))
 
 
-def _wilson(successes: int, runs: int) -> Estimate:
+def proportion(successes: int, runs: int) -> Estimate:
+    """Return successes by runs, with Wilson's interval."""
     test = binomtest(successes, runs)
     interval = test.proportion_ci(CONFIDENCE, method="wilson")
     return Estimate(float(test.statistic), float(interval.low), float(interval.high))
