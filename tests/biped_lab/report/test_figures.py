@@ -11,6 +11,7 @@ from tests.biped_lab.report.made_results import (
     BOUND,
     BY_LT,
     STRATEGY_1,
+    MadeRun,
     made_results,
     runs_of,
 )
@@ -25,8 +26,10 @@ from biped_lab.report.finished import (
     FinishedRuns,
     finished_runs,
 )
+from biped_lab.report.grid import draw_grid, is_grid
 from biped_lab.report.theme import svg, theme
 from biped_lab.report.walks import draw_end_causes, draw_replay
+from biped_lab.study import Value
 
 
 @pytest.fixture(autouse=True)
@@ -222,3 +225,41 @@ def test_figures_are_laid_out_without_a_warning_and_are_the_same_bytes(
 ) -> None:
     assert svg(figure_2(strategy_1)) == svg(figure_2(strategy_1))
     assert not recwarn.list
+
+
+# -- K and LT --------------------------------------------------------------------------
+
+
+def grid_runs() -> tuple[dict[str, dict[str, Value]], list[MadeRun]]:
+    factors: dict[str, dict[str, Value]] = {
+        f"LT = {lt}, K = {k}": {"LT": lt, "K": k} for lt in (1, 3) for k in (1, 3, 5)
+    }
+    runs = [
+        MadeRun(name, seed, int(cell["LT"]) * 10 + int(cell["K"]), frozen=seed > 0)
+        for name, cell in factors.items()
+        for seed in range(4)
+    ]
+    return factors, runs
+
+
+def test_two_factors_are_a_grid_of_medians_and_of_frozen_walks(tmp_path: Path) -> None:
+    factors, runs = grid_runs()
+    finished = finished_runs(made_results(tmp_path, runs, factors))
+    assert is_grid(finished)
+    episodes, frozen, *_ = draw_grid(finished).axes
+    cells = {text.get_position(): text.get_text() for text in episodes.texts}
+    assert cells == {
+        (x, y): str(10 * lt + k)
+        for x, lt in enumerate((1, 3))
+        for y, k in enumerate((1, 3, 5))
+    }
+    assert {text.get_text() for text in frozen.texts} == {"75%"}
+
+
+def test_a_grid_with_a_hole_or_of_two_series_is_none(
+    tmp_path: Path, strategy_2: FinishedRuns
+) -> None:
+    factors, runs = grid_runs()
+    some = [run for run in runs if run.arm != "LT = 3, K = 5"]
+    assert not is_grid(finished_runs(made_results(tmp_path / "hole", some, factors)))
+    assert not is_grid(strategy_2)

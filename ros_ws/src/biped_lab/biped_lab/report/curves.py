@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from biped_common.colours import GREY
 from biped_common.timing import seconds
-from biped_lab.report.finished import EPISODES, FinishedRuns
-from biped_lab.report.marks import arm_panels, reached
-from biped_lab.statistics.censored import CensoredTimes, reached_curve
+from biped_lab.report.finished import FinishedRuns
+from biped_lab.report.marks import arm_panels
+from biped_lab.statistics.censored import reached_curve
 from biped_lab.statistics.comparison import FEWEST_RUNS
 
 RUNNING_MEAN_EPISODES = 10
@@ -38,7 +38,7 @@ def learning_curves(finished: FinishedRuns) -> Figure:
 
 def share_at_goal(finished: FinishedRuns) -> Figure:
     """Draw the share of runs at the goal: Kaplan and Meier, with 95 % intervals."""
-    curves = {arm: reached_curve(_times(finished.of(arm))) for arm in finished.arms}
+    curves = {arm: reached_curve(finished.times(arm)) for arm in finished.arms}
     figure, panels = arm_panels(
         finished, finished.arms, "share of runs at the goal [ ]", "episode"
     )
@@ -47,7 +47,7 @@ def share_at_goal(finished: FinishedRuns) -> Figure:
         if rival in curves:
             _draw_steps(axes, curves[rival], GREY)
         curve = curves[arm]
-        times = _times(finished.of(arm))
+        times = finished.times(arm)
         if len(times) >= FEWEST_RUNS:
             axes.fill_between(
                 curve["episode"], curve["low"], curve["high"], step="post",
@@ -140,10 +140,6 @@ def _draw_quartiles(
     low, median, high = np.quantile(values, (0.25, 0.5, 0.75), axis=0)
     axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0.0)
     axes.plot(x, median, color=colour)
-
-
-def _times(runs: pd.DataFrame) -> CensoredTimes:
-    return CensoredTimes(runs[EPISODES].to_numpy(dtype=np.float64), reached(runs))
 
 
 def _draw_steps(axes: Axes, curve: pd.DataFrame, colour: str) -> None:

@@ -17,6 +17,7 @@ from biped_lab.report.curves import (
     share_at_goal,
 )
 from biped_lab.report.finished import EPISODES, FIXED_SHARE, SIMULATED, FinishedRuns
+from biped_lab.report.grid import draw_grid, is_grid
 from biped_lab.report.maps import draw_maps, learned_maps
 from biped_lab.report.walks import draw_end_causes, draw_replay, never_interrupted
 from biped_lab.statistics.comparison import FEWEST_RUNS
@@ -46,6 +47,8 @@ def figures(finished: FinishedRuns, rng: np.random.Generator) -> Iterator[Report
         rng: draws the bootstrap samples of the bars' intervals.
     """
     yield from _quantities(finished, rng)
+    if is_grid(finished):
+        yield _grid(finished)
     yield _learning_curves(finished)
     yield _share_at_goal(finished)
     if finished.fixing_arms:
@@ -146,6 +149,22 @@ def _compared_in_grey(finished: FinishedRuns) -> str:
     if len(rivals) == 1:
         return f" Grey: {rivals.pop()}, for comparison."
     return " Grey: the same without fixed mode, for comparison."
+
+
+def _grid(finished: FinishedRuns) -> ReportFigure:
+    frozen = (
+        " Right: of the runs at the goal, the share whose frozen walk, tried once, was "
+        "completed."
+        if finished.tries_frozen_walks
+        else ""
+    )
+    return ReportFigure(
+        "grid",
+        "The two factors together",
+        "Median episodes to the goal (Kaplan and Meier; ∞: beyond what was watched)."
+        + frozen,
+        draw_grid(finished),
+    )
 
 
 def _learning_curves(finished: FinishedRuns) -> ReportFigure:

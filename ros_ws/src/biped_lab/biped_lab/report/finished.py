@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from biped_lab.report.arrangement import Arrangement, arrange
 from biped_lab.results import StudyResults
+from biped_lab.statistics.censored import CensoredTimes
 
 FIXED_SHARE = "fixed_share"
 EPISODES, SIMULATED = "time", "simulated_s"
@@ -41,6 +42,13 @@ class FinishedRuns:
     def values(self, arm: str, column: str) -> NDArray[np.float64]:
         """Return (runs,) what the runs of an arm have in a column; NaN left out."""
         return np.asarray(self.of(arm)[column].dropna(), dtype=np.float64)
+
+    def times(self, arm: str) -> CensoredTimes:
+        """Return the episodes until each run of an arm was at the goal."""
+        runs = self.of(arm)
+        return CensoredTimes(
+            runs[EPISODES].to_numpy(dtype=np.float64), runs["reached"].to_numpy(bool)
+        )
 
     def tables_of(self, arm: str) -> list[pd.DataFrame]:
         """Return the episodes of each run of an arm."""
