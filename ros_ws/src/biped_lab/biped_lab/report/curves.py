@@ -8,16 +8,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
 from biped_common.colours import GREY
 from biped_common.timing import seconds
 from biped_lab.report.finished import FinishedRuns
 from biped_lab.report.marks import arm_panels
-from biped_lab.statistics.censored import reached_curve
+from biped_lab.statistics.censored import median, reached_curve
 from biped_lab.statistics.comparison import FEWEST_RUNS
 
 RUNNING_MEAN_EPISODES = 10
+_FAR_FASTER = 20.0
 _PROGRESS = np.linspace(0.0, 1.0, 101)
 
 Curves = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
@@ -33,6 +35,8 @@ def learning_curves(finished: FinishedRuns) -> Figure:
     for axes in figure.axes:
         axes.axhline(whole_s, color=GREY, linewidth=0.8, linestyle=":")
         axes.set_ylim(bottom=0.0)
+    last = max(len(table) for table in finished.tables.values())
+    _episodes_along(figure.axes[0], finished, last)
     return figure
 
 
@@ -62,7 +66,7 @@ def share_at_goal(finished: FinishedRuns) -> Figure:
                 markeredgewidth=1.4, label="_censored", clip_on=False,
             )  # fmt: skip
     axes.set_ylim(-0.03, 1.03)  # all panels share their axes
-    axes.set_xlim(0.0, max(curve["episode"].max() for curve in curves.values()))
+    _episodes_along(axes, finished, max(c["episode"].max() for c in curves.values()))
     return figure
 
 
@@ -94,6 +98,18 @@ def fixed_share_by_progress(finished: FinishedRuns) -> Figure:
     figure.axes[0].set_ylim(0.0, 1.0)
     figure.axes[0].set_xlim(0.0, 1.0)
     return figure
+
+
+def _episodes_along(axes: Axes, finished: FinishedRuns, last: float) -> None:
+    """Set the axis of the episodes; logarithmic where some arms are far faster."""
+    fastest = min(median(finished.times(arm)).value for arm in finished.arms)
+    if fastest < last / _FAR_FASTER:
+        axes.set_xscale("log")
+        axes.set_xlim(1.0, last)
+        axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+    else:
+        axes.set_xlim(0.0, last)
 
 
 def _over_episodes(
