@@ -7,8 +7,9 @@ Learns the walk with XoL beyond the paper, with the same but for fixed-mode stat
 XoL by Strategy 2, and by a search over plans, which answers no observation, on the same
 seeds; undisturbed, or under each disturbance. Then walks what was learned, frozen,
 under each disturbance, some walks per seed; and so the optimal plan, which is known to
-the one who knows the undisturbed plant. Prints a table in Markdown: how many walks
-were completed, of those whose learning came to its end, and how long learning took.
+the one who knows the undisturbed plant. Prints a table in Markdown: how many walks were
+completed, of those whose learning came to its end, and how long learning took. Needs
+the extra `mujoco`.
 """
 
 from __future__ import annotations
@@ -74,6 +75,7 @@ DISTURBANCES: Final = {
         SENSED, *sensor_noise(0.0), "sim.sensors.delay_ticks=1",
     ),
     "the engine without contact": ("sim.engine=kinematic",),
+    "MuJoCo instead of PyBullet": ("sim.engine=mujoco",),
 }  # fmt: skip
 
 
