@@ -1,6 +1,7 @@
 """Broken bags: what is whole comes back, and what is lost is counted to the message."""
 
 import mmap
+import struct
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -264,6 +265,21 @@ def test_messages_are_counted_by_their_numbers_where_the_index_is_gone_too(
     case = Case(original, tmp_path / "cases", content)
     told = case.report.topics[CLOCK]
     assert (told.lost, told.exact) == (case.lost[CLOCK], True)
+
+
+@pytest.mark.parametrize("of_record", [False, True])
+def test_a_length_that_reaches_over_the_next_chunks_costs_none_of_them(
+    original, tmp_path, of_record
+):
+    begin, end, _ = original.chunks[0]
+    content = bytearray(original.content)
+    named = begin + RECORD_HEADER.size + 28  # behind times, size and checksum
+    (name_bytes,) = struct.unpack_from("<I", content, named)
+    length_at = begin + 1 if of_record else named + 4 + name_bytes
+    (length,) = struct.unpack_from("<Q", content, length_at)
+    struct.pack_into("<Q", content, length_at, length + original.chunks[2][1] - end)
+    case = Case(original, tmp_path / "cases", bytes(content))
+    assert not case.lost and not case.foreign
 
 
 @settings(

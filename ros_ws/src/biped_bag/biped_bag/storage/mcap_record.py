@@ -272,7 +272,10 @@ def _of_zstd(data: bytes, told_bytes: int) -> bytes:
         size = told_bytes
     if size > MOST_CHUNK_BYTES:
         raise _too_large(size)
-    return zstandard.decompress(data, max_output_size=size)
+    # What stands behind a frame is the next record, where a damaged length says more.
+    return zstandard.ZstdDecompressor().decompress(
+        data, max_output_size=size, allow_extra_data=False
+    )
 
 
 def _of_lz4(data: bytes, _: int) -> bytes:
@@ -282,6 +285,8 @@ def _of_lz4(data: bytes, _: int) -> bytes:
         raise _too_large(len(content))
     if not unpack.eof:
         raise ValueError("lz4 data that are cut off")
+    if unpack.unused_data:
+        raise ValueError("more behind lz4 data than there can be")
     return content
 
 
