@@ -155,39 +155,16 @@ class PyBulletWorld(Physics):
 
     def step(self, q: Array, dq: Array, joints: Array) -> FloorContact:
         """Drive the joints for one control tick, and read the sensors."""
-        if self._pid:
-            return self._pull(self._pid, q, dq, joints)
-        return FloorContact(
-            *tick(
-                self.client,
-                self.robot,
-                self.floor,
-                self.left_sole,
-                self.joint_numbers,
-                self.torque_limits_nm,
-                self.servo_shares,
-                q,
-                dq,
-                joints,
-            )
-        )
-
-    def _pull(self, pid: PidServos, q: Array, dq: Array, joints: Array) -> FloorContact:
-        """Let PID servos pull for one control tick, and read the sensors."""
+        client, robot, numbers = self.client, self.robot, self.joint_numbers
+        where = client, robot, self.floor, self.left_sole, numbers
+        if self._pid is None:
+            servos = self.torque_limits_nm, self.servo_shares
+            return FloorContact(*tick(*where, *servos, q, dq, joints))
         now = np.empty(3 * _N_JOINTS)
-        read_joints(self.client, self.robot, self.joint_numbers, now)
+        read_joints(client, robot, numbers, now)
         position, velocity, _ = now.reshape(3, _N_JOINTS)
-        return FloorContact(
-            *pulled_tick(
-                self.client,
-                self.robot,
-                self.floor,
-                self.left_sole,
-                self.joint_numbers,
-                pid.pull(q - position, dq - velocity),
-                joints,
-            )
-        )
+        torques = self._pid.pull(q - position, dq - velocity)
+        return FloorContact(*pulled_tick(*where, torques, joints))
 
     # -- readings ------------------------------------------------------------------
 

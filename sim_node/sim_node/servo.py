@@ -84,10 +84,11 @@ class ServoSettings(Settings):
 
     @property
     def shares(self) -> ServoShares:
-        """What an ideal or a lagging servo takes back of its errors.
+        """What an ideal or a lagging servo takes back of its errors; pid takes none.
 
         The error e of a servo that lags moves by (z - p)^2 e = 0, p = exp(-2 pi f dt).
         """
+        assert self.kind != "pid"
         if self.kind == "ideal":
             return ServoShares(0.5, 1.0)
         p = math.exp(-2.0 * math.pi * self.bandwidth_hz * CONTROL_PERIOD_S)

@@ -256,6 +256,15 @@ def test_two_factors_are_a_grid_of_medians_and_of_frozen_walks(tmp_path: Path) -
     assert {text.get_text() for text in frozen.texts} == {"75%"}
 
 
+def test_cells_that_nobody_has_learned_in_say_so(tmp_path: Path) -> None:
+    factors, _ = grid_runs()
+    runs = [MadeRun(name, seed, BOUND) for name in factors for seed in range(2)]
+    finished = finished_runs(made_results(tmp_path, runs, factors))
+    episodes, frozen, *_ = draw_grid(finished).axes
+    assert {text.get_text() for text in episodes.texts} == {"∞"}
+    assert {text.get_text() for text in frozen.texts} == {"–"}
+
+
 def test_a_grid_with_a_hole_or_of_two_series_is_none(
     tmp_path: Path, strategy_2: FinishedRuns
 ) -> None:

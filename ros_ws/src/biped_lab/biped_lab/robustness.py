@@ -41,10 +41,9 @@ from biped_common.settings import to_mapping
 from biped_lab.markdown import Table
 from biped_lab.searches.linear_programming import optimum
 from biped_lab.searches.plan import PlanSpace
-from biped_lab.searches.search_contestant import PlannedWalk
+from biped_lab.searches.search_contestant import PlannedWalk, planned_task
 from biped_lab.searches.searcher import Walked
 from biped_lab.searches.tail_search import TailSearch, TailSearchOptions
-from learner_node.walking.task import WalkTask
 from learner_node.walking.walks import FrozenWalk
 from sim_node.settings import SensorSettings
 
@@ -105,7 +104,7 @@ def search(settings: RunSettings, seed: int) -> Learned | None:
         np.random.default_rng(stream(seed)) for stream in (learner_stream, robot_stream)
     )
     searcher = TailSearch(TailSearchOptions(), space, searching)
-    task = whole_walk(settings)
+    task = planned_task(settings)
     # Where chance has a part in the walks, none is like another.
     kind = Walker if settings.sim.random else ReplayingWalker
     with closing(kind(settings, disturbing)) as walker:
@@ -124,16 +123,7 @@ def solve(settings: RunSettings, _: int) -> Learned:
     """Return the optimal plan of the linear model, which is the undisturbed plant's."""
     space = PlanSpace.of_learning_ticks(settings)
     chosen = space.nearest(optimum(settings, space).plan_m)
-    return Learned(0, partial(PlannedWalk, whole_walk(settings), space, chosen))
-
-
-def whole_walk(settings: RunSettings) -> WalkTask:
-    """Return the task with the whole walk as its target from the start."""
-    whole = replace(
-        settings.learner.schedule, first_target_s=settings.gait.duration_s, run_on=False
-    )
-    learner = replace(settings.learner, schedule=whole)
-    return WalkTask(learner, settings.gait.walk_ticks)
+    return Learned(0, partial(PlannedWalk, planned_task(settings), space, chosen))
 
 
 def contestants(

@@ -20,6 +20,7 @@ from biped_lab.statistics.comparison import FEWEST_RUNS
 
 RUNNING_MEAN_EPISODES = 10
 _FAR_FASTER = 20.0
+"""So many times as fast as the slowest run, an arm's curve is next to the axis."""
 _PROGRESS = np.linspace(0.0, 1.0, 101)
 
 Curves = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
@@ -153,9 +154,9 @@ def _quartile_panels(
 def _draw_quartiles(
     axes: Axes, x: NDArray[np.float64], values: NDArray[np.float64], colour: str
 ) -> None:
-    low, median, high = np.quantile(values, (0.25, 0.5, 0.75), axis=0)
+    low, middle, high = np.quantile(values, (0.25, 0.5, 0.75), axis=0)
     axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0.0)
-    axes.plot(x, median, color=colour)
+    axes.plot(x, middle, color=colour)
 
 
 def _draw_steps(axes: Axes, curve: pd.DataFrame, colour: str) -> None:

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
+from biped_common.colours import INK
 from biped_lab.report.finished import FinishedRuns
 from biped_lab.report.theme import new_figure
 from biped_lab.statistics.censored import median
@@ -51,14 +52,18 @@ def _draw(
         cell = series.index(_series(finished, arm)), places.index(_place(finished, arm))
         values[cell] = value_of(finished, arm)
     known = np.where(np.isfinite(values), values, np.nan)
-    low, high = scale or (float(np.nanmin(known)), float(np.nanmax(known)))
+    seen = values[np.isfinite(values)]
+    if scale is None:
+        scale = (seen.min(), seen.max()) if len(seen) else (0.0, 1.0)
+    low, high = scale
     image = axes.imshow(
         known, cmap="cividis", vmin=low, vmax=high, aspect="auto", origin="lower"
     )
     dark = known < low + _DARK * (high - low)
     for (i, j), value in np.ndenumerate(values):
-        text = form.format(value) if np.isfinite(value) else "∞"
-        colour = "white" if dark[i, j] else "black"
+        text = "∞" if np.isinf(value) else form.format(value)
+        text = "–" if np.isnan(value) else text
+        colour = "white" if dark[i, j] else INK
         axes.text(j, i, text, ha="center", va="center", color=colour, fontsize=8.0)
     axes.set_xticks(range(len(places)), places)
     axes.set_yticks(range(len(series)), series)

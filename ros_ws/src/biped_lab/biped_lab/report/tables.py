@@ -54,7 +54,7 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
         found, rng = statistics.loc[arm], np.random.default_rng(draws)
         mean_episodes = restricted_mean(finished, arm, EPISODES, rng)
         mean_s = restricted_mean(finished, arm, SIMULATED, rng)
-        frozen = (_frozen_walks(finished, arm),) if finished.tries_frozen_walks else ()
+        frozen = [_frozen_walks(finished, arm)] if finished.tries_frozen_walks else []
         share = restricted_mean(finished, arm, FIXED_SHARE, rng)
         rows.append(
             (
@@ -74,8 +74,9 @@ def arms_table(finished: FinishedRuns, rng: np.random.Generator) -> Table:
                 _text(share, "{:.2f}"),
             )
         )
+    frozen = ["frozen walk"] if finished.tries_frozen_walks else []
     head = (
-        "arm", "runs", "at the goal", *("frozen walk",)[: finished.tries_frozen_walks],
+        "arm", "runs", "at the goal", *frozen,
         "median [episodes]", "mean [episodes]", "mean [s simulated]",
         "with restarts [episodes]", "scatter", "compared with", "ratio of medians",
         "P(faster)", "p (Holm)", "fixed / NB",
@@ -104,10 +105,11 @@ def comparisons_table(finished: FinishedRuns, rng: np.random.Generator) -> Table
         )
         for arm, found in statistics.iterrows()
     ]
+    frozen = ["p, frozen walks"] if finished.tries_frozen_walks else []
     head = (
         "arm", "compared with", "at the goal [ ]", "seeds in both",
         "difference of means [episodes]", "p, Wilcoxon", "p, Wilcoxon within pairs",
-        "p, log-rank", "p, mean", *("p, frozen walks",)[: finished.tries_frozen_walks],
+        "p, log-rank", "p, mean", *frozen,
     )  # fmt: skip
     return Table(head, tuple(rows))
 

@@ -120,7 +120,7 @@ class SearchContestant:
         )
         self._searcher = kind.make(settings, self._space, searching)
         self._walker = ReplayingWalker(settings, unused)
-        self._task = _task(settings, self._walker.walk_ticks, kind.incremental)
+        self._task = planned_task(settings, kind.incremental)
         self._log = EpisodeLog()
         self._plans: list[NDArray[np.int64]] = []
         self._trajectories_sha256 = ""
@@ -293,8 +293,10 @@ def search_entry(
     return Entry(options, begin, resume, module)
 
 
-def _task(settings: RunSettings, walk_ticks: int, incremental: bool) -> WalkTask:
+def planned_task(settings: RunSettings, incremental: bool = False) -> WalkTask:
+    """Return the task of a plan: the whole walk, or a target time that grows."""
     schedule = replace(settings.learner.schedule, successes_per_subtask=1)
     if not incremental:
         schedule = replace(schedule, first_target_s=settings.gait.duration_s)
-    return WalkTask(replace(settings.learner, schedule=schedule), walk_ticks)
+    learner = replace(settings.learner, schedule=schedule)
+    return WalkTask(learner, settings.gait.walk_ticks)
