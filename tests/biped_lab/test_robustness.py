@@ -1,18 +1,21 @@
 """Learned walks under disturbances."""
 
 import itertools
+from dataclasses import replace
 
 import pytest
 
 from biped_bringup.run_settings import changed_settings, load_settings
 from biped_lab.robustness import (
     DISTURBANCES,
-    column,
+    Outcome,
+    Trial,
     completed,
     contestants,
     learn,
     search,
     solve,
+    within,
 )
 
 SHORT = ("gait.steps=1", "gait.double_support_s=0.9")
@@ -36,13 +39,45 @@ def test_a_disturbance_that_nobody_holds_is_felt(learned):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("while_learning", [False, True])
-def test_a_table_has_a_cell_for_each_disturbance(while_learning):
-    settings = changed_settings(load_settings("directed"), changes=SHORT)
-    cells = list(column(settings, learn, range(SEED, SEED + 1), 2, while_learning))
-    assert len(cells) == len(DISTURBANCES)
-    assert cells[0].startswith("2 of 2")
-    assert all(("learned, " in cell) == while_learning for cell in cells)
+def test_a_seed_has_an_outcome_for_each_disturbance(monkeypatch):
+    learned_with = []
+
+    def solve_and_tell(settings, seed):
+        learned_with.append(settings.sim)
+        return solve(settings, seed)
+
+    monkeypatch.setattr("biped_lab.robustness.solve", solve_and_tell)
+    outcomes = Trial("t_ds_080", "optimum", walks=2).outcomes(SEED)
+    assert len(outcomes) == len(DISTURBANCES)
+    assert outcomes[0] == Outcome(episodes=0, completed=2)
+    assert len(learned_with) == 1
+
+    Trial("t_ds_080", "optimum", while_learning=True).outcomes(SEED)
+    plants = learned_with[1:]
+    assert len(plants) == len(DISTURBANCES)
+    assert all(a != b for a, b in itertools.combinations(plants, 2))
+
+
+def test_cells_count_walks_of_those_who_learned():
+    of_seeds = [
+        [Outcome(9, 2), Outcome(9, 1)],
+        [Outcome(30, 2), Outcome(30, 2)],
+        [Outcome(None, 0), Outcome(None, 0)],
+    ]
+    at_test = Trial("directed", "beyond", walks=2)
+    assert list(at_test.cells(of_seeds)) == ["4 of 4; 2 learned, 30", "3 of 4"]
+    throughout = replace(at_test, while_learning=True)
+    assert list(throughout.cells(of_seeds))[1] == "3 of 4; 2 learned, 30"
+    assert list(at_test.cells(of_seeds[2:])) == ["0 of 0; 0 learned, inf", "0 of 0"]
+
+
+def test_a_stricter_limit_is_one_of_learning():
+    learned_with = []
+    settings = load_settings("directed")
+    within(0.045, lambda told, _: learned_with.append(told))(settings, SEED)
+    (stricter,) = learned_with
+    assert stricter.sim.limits.zmp_error_m == 0.045 < settings.sim.limits.zmp_error_m
+    assert replace(stricter, sim=settings.sim) == settings
 
 
 def test_what_is_not_learned_in_time_is_none(monkeypatch):
@@ -52,7 +87,7 @@ def test_what_is_not_learned_in_time_is_none(monkeypatch):
 
 
 def test_all_walk_the_same_walk():
-    every = [settings for _, settings, _ in contestants("t_ds_080")]
+    every = [settings for _, settings, _ in contestants("t_ds_080").values()]
     assert {(each.gait, each.correction) for each in every} == {
         (every[0].gait, every[0].correction)
     }

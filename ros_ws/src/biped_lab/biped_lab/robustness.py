@@ -2,24 +2,29 @@
 
     python -m biped_lab.robustness --seeds 20
     python -m biped_lab.robustness --seeds 20 --while-learning
+    python -m biped_lab.robustness --seeds 20 --learning-limit 0.045
 
-Learns the walk with XoL beyond the paper, with the same but for fixed-mode states, with
-XoL by Strategy 2, and by a search over plans, which answers no observation, on the same
-seeds; undisturbed, or under each disturbance. Then walks what was learned, frozen,
-under each disturbance, some walks per seed; and so the optimal plan, which is known to
-the one who knows the undisturbed plant. Prints a table in Markdown: how many walks were
-completed, of those whose learning came to its end, and how long learning took. Needs
-the extra `mujoco`.
+Learns the walk with XoL beyond the paper, with XoL by the paper's rules (Strategy 2),
+with each of them but without fixed-mode states, and by a search over plans, which
+answers no observation, on the same seeds; undisturbed, or under each disturbance; with
+the limit of the ZMP error that is walked with, or a stricter one. Then walks what was
+learned, frozen, under each disturbance, some walks per seed; and so the optimal plan,
+which is known to the one who knows the undisturbed plant. Prints a table in Markdown:
+how many walks were completed, of those whose learning came to its end, and how long
+learning took. Needs the extra `mujoco`.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import multiprocessing
+import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from statistics import median
 from typing import Final, NamedTuple
@@ -48,6 +53,8 @@ from learner_node.walking.walks import FrozenWalk
 from sim_node.settings import SensorSettings
 
 MOST_EPISODES = 400
+STRATEGY_2 = "learner.xol.fixed_mode.strategy=strategy2"
+LT_3 = "learner.schedule.successes_per_subtask=3"
 SENSED = "sim.observations=sensors"
 
 
@@ -126,30 +133,38 @@ def solve(settings: RunSettings, _: int) -> Learned:
     return Learned(0, partial(PlannedWalk, planned_task(settings), space, chosen))
 
 
-def contestants(
-    preset: str,
-) -> Iterator[tuple[str, RunSettings, Way]]:
-    """Yield name, settings and way to learn of each.
+def contestants(preset: str) -> dict[str, tuple[str, RunSettings, Way]]:
+    """Return name, settings and way to learn of each.
 
     Args:
         preset: of the one beyond the paper; gait and correction of all are as in it.
     """
     beyond = load_settings(preset)
-    paper = load_settings(
-        changes=[
-            "learner.xol.fixed_mode.strategy=strategy2",
-            "learner.schedule.successes_per_subtask=3",
-        ]
-    )
+    paper = load_settings(changes=[STRATEGY_2, LT_3])
     paper = replace(paper, gait=beyond.gait, correction=beyond.correction)
-    yield f"XoL, preset {preset}", beyond, learn
-    explores = changed_settings(
-        beyond, changes=["learner.xol.fixed_mode.strategy=none"]
-    )
-    yield "the same, no fixed mode", explores, learn
-    yield "XoL, Strategy 2, LT = 3", paper, learn
-    yield "tail search", beyond, search
-    yield "linear programming", beyond, solve
+    return {
+        "beyond": (f"XoL, preset {preset}", beyond, learn),
+        "beyond-explores": ("the same, no fixed mode", exploring(beyond), learn),
+        "paper": ("XoL, Strategy 2, LT = 3", paper, learn),
+        "paper-explores": ("Strategy none, LT = 3", exploring(paper), learn),
+        "search": ("tail search", beyond, search),
+        "optimum": ("linear programming", beyond, solve),
+    }
+
+
+def exploring(settings: RunSettings) -> RunSettings:
+    """Return settings of a learner without fixed-mode states."""
+    return changed_settings(settings, changes=["learner.xol.fixed_mode.strategy=none"])
+
+
+def within(limit_m: float, way: Way) -> Way:
+    """Return a way to learn that keeps the ZMP error below a limit of its own [m]."""
+    limit = f"sim.limits.zmp_error_m={limit_m}"
+
+    def learn_within(settings: RunSettings, seed: int) -> Learned | None:
+        return way(changed_settings(settings, changes=[limit]), seed)
+
+    return learn_within
 
 
 def completed(
@@ -161,21 +176,63 @@ def completed(
         return sum(walker.walk(learned.walk()).completed for _ in range(walks))
 
 
-def column(
-    settings: RunSettings, way: Way, seeds: range, walks: int, while_learning: bool
-) -> Iterator[str]:
-    """Yield a cell for each disturbance: walks completed, episodes of learning."""
-    found: dict[int, Learned | None] = {}
-    for changes in DISTURBANCES.values():
-        disturbed = changed_settings(settings, changes=changes)
-        if while_learning or not found:
-            found = {n: way(disturbed, n) for n in seeds}
-        learned = {n: walk for n, walk in found.items() if walk is not None}
-        held = sum(completed(w, disturbed, n, walks) for n, w in learned.items())
-        of = f"{held} of {walks * len(learned)}"
-        # Those that did not learn took longer than any that did.
-        episodes = median(w.episodes if w else math.inf for w in found.values())
-        yield f"{of}; {len(learned)} learned, {episodes:g}" if while_learning else of
+class Outcome(NamedTuple):
+    """What came of one seed under one disturbance."""
+
+    episodes: int | None
+    """Of learning; None: not learned in time."""
+    completed: int
+    """Of the walks of what was learned."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Learning and walking under each disturbance, by one contestant."""
+
+    preset: str
+    who: str
+    """Of the `contestants`."""
+    walks: int = 1
+    """Per seed and disturbance."""
+    while_learning: bool = False
+    """Disturbances are there while learning, too."""
+    learning_limit_m: float | None = None
+    """Of the ZMP error while learning, if not that of the preset."""
+
+    def outcomes(self, seed: int) -> list[Outcome]:
+        """Learn and walk with a seed; return what came of it, by disturbance."""
+        _, settings, way = contestants(self.preset)[self.who]
+        if self.learning_limit_m is not None:
+            way = within(self.learning_limit_m, way)
+        outcomes: list[Outcome] = []
+        for changes in DISTURBANCES.values():
+            disturbed = changed_settings(settings, changes=changes)
+            if self.while_learning or not outcomes:
+                learned = way(disturbed, seed)
+            held = 0 if learned is None else completed(
+                learned, disturbed, seed, self.walks
+            )  # fmt: skip
+            episodes = None if learned is None else learned.episodes
+            outcomes.append(Outcome(episodes, held))
+        return outcomes
+
+    def cells(self, of_seeds: Sequence[Sequence[Outcome]]) -> Iterator[str]:
+        """Yield for each disturbance how many walks were completed, of how many.
+
+        How long learning took is said where it is not the same as in the cell before.
+        """
+        for row, of_row in enumerate(zip(*of_seeds, strict=True)):
+            learned = sum(each.episodes is not None for each in of_row)
+            held = sum(each.completed for each in of_row)
+            cell = f"{held} of {self.walks * learned}"
+            if self.while_learning or row == 0:
+                # Those that did not learn took longer than any that did.
+                took = median(
+                    math.inf if each.episodes is None else each.episodes
+                    for each in of_row
+                )
+                cell += f"; {learned} learned, {took:g}"
+            yield cell
 
 
 def main() -> int:
@@ -189,31 +246,56 @@ def main() -> int:
     parser.add_argument(
         "--walks", type=positive, default=1, metavar="N", help="per seed (default 1)"
     )
+    everybody = contestants(PRESETS[0])
     parser.add_argument(
         "--columns",
-        type=int,
-        choices=range(1, 6),
+        choices=tuple(everybody),
+        default=tuple(everybody),
         nargs="+",
-        metavar="N",
-        help="only these, of the five: 1 beyond the paper, 2 without fixed mode, "
-        "3 Strategy 2, 4 plan that was searched, 5 optimal plan",
+        metavar="WHO",
+        help=f"only these, of {', '.join(everybody)}",
+    )
+    parser.add_argument(
+        "--learning-limit",
+        type=float,
+        metavar="M",
+        help="of the ZMP error while learning [m]; walks have the one of the preset",
     )
     parser.add_argument(
         "--while-learning",
         action="store_true",
-        help="disturbances are there while learning, too; a cell then also says how "
+        help="disturbances are there while learning, too; every cell then says how "
         "many seeds learned, and the median of their episodes",
+    )
+    parser.add_argument(
+        "--workers",
+        type=positive,
+        default=len(os.sched_getaffinity(0)),
+        metavar="N",
+        help="processes, each with a seed at a time (default: the cores there are)",
     )
     options = parser.parse_args()
     seeds = range(options.first, options.first + options.seeds)
     columns: dict[str, list[str]] = {}
-    for n, (name, settings, way) in enumerate(contestants(options.preset), 1):
-        if options.columns is not None and n not in options.columns:
-            continue
-        columns[name] = list(
-            column(settings, way, seeds, options.walks, options.while_learning)
-        )
-        print(f"{name}: walked", file=sys.stderr, flush=True)
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(options.workers, context) as pool:
+        for who, (name, _, _) in contestants(options.preset).items():
+            if who not in options.columns:
+                continue
+            trial = Trial(
+                options.preset,
+                who,
+                options.walks,
+                options.while_learning,
+                options.learning_limit,
+            )
+            of_seeds = []
+            for seed, outcomes in zip(
+                seeds, pool.map(trial.outcomes, seeds), strict=True
+            ):
+                of_seeds.append(outcomes)
+                print(f"{name}: seed {seed} walked", file=sys.stderr, flush=True)
+            columns[name] = list(trial.cells(of_seeds))
     rows = zip(DISTURBANCES, *columns.values(), strict=True)
     print(Table(("disturbance", *columns), tuple(rows)).markdown(), end="")
     return 0
