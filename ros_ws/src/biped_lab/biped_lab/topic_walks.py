@@ -34,7 +34,7 @@ from std_srvs.srv import Trigger
 
 from biped_bringup.run_settings import PRESETS, RunSettings, load_settings
 from biped_bringup.training import TrainingRun
-from biped_common.command_line import positive
+from biped_common.command_line import DONE, NOT_ACHIEVED, positive
 from biped_common.timing import seconds
 from biped_lab.markdown import Table
 from biped_lab.robustness import MOST_EPISODES, SENSED
@@ -48,6 +48,7 @@ from msgs_json.wire import decode
 from sim_node.settings import LimitSettings
 
 STRICTER_BY_M: Final = 0.003
+SAID: Final = "said.log"
 _TIMEOUT_S = 180.0
 _ENDING_S = 20.0
 _TURN_S = 0.05
@@ -141,7 +142,7 @@ def walk(folder: Path, pace: Pace, seed: int, limit_m: float) -> list[EpisodeRes
     """Have the nodes walk what was learned; return how each attempt ended.
 
     Args:
-        folder: of the memory.
+        folder: of the memory; what the processes say is added to `said.log`.
         pace: of the robot and the nodes.
         seed: of the noise of the sensors.
         limit_m: of the ZMP error.
@@ -161,15 +162,16 @@ def walk(folder: Path, pace: Pace, seed: int, limit_m: float) -> list[EpisodeRes
     with closing(Person()) as person:
         with _running(robot, folder), _running([*nodes, *pace.of_nodes], folder) as up:
             person.attend(up)
-        if up.returncode not in {0, 1}:
-            raise ChildProcessError(f"biped up ended with status {up.returncode}")
+        if up.returncode not in {DONE, NOT_ACHIEVED}:
+            *_, last = ["", *(folder / SAID).read_text().splitlines()]
+            raise ChildProcessError(f"biped up: status {up.returncode}: {last}")
         return person.results
 
 
 @contextmanager
 def _running(words: list[str], folder: Path) -> Iterator[subprocess.Popen[bytes]]:
     """Run Python in a process, which is gone at the end of the block."""
-    with (folder / "said.log").open("ab") as log:
+    with (folder / SAID).open("ab") as log:
         process = subprocess.Popen(
             [sys.executable, *words],
             stdin=subprocess.DEVNULL,
