@@ -15,6 +15,7 @@ from biped_lab.robustness import (
     learn,
     search,
     solve,
+    tighten,
     within,
 )
 
@@ -78,6 +79,15 @@ def test_a_stricter_limit_is_one_of_learning():
     (stricter,) = learned_with
     assert stricter.sim.limits.zmp_error_m == 0.045 < settings.sim.limits.zmp_error_m
     assert replace(stricter, sim=settings.sim) == settings
+
+
+def test_a_learner_goes_on_until_it_has_a_margin(monkeypatch):
+    monkeypatch.setattr("biped_lab.robustness.MOST_EPISODES", 40)
+    settings = changed_settings(load_settings("t_ds_080"), changes=SHORT)
+    first, widest = learn(settings, SEED), tighten(settings, SEED)
+    assert first.episodes < widest.episodes <= 40
+    stricter = changed_settings(settings, changes=["sim.limits.zmp_error_m=0.0625"])
+    assert completed(widest, stricter, SEED) == 1
 
 
 def test_what_is_not_learned_in_time_is_none(monkeypatch):

@@ -3,11 +3,12 @@
     python -m biped_lab.robustness --seeds 20
     python -m biped_lab.robustness --seeds 20 --while-learning
     python -m biped_lab.robustness --seeds 20 --learning-limit 0.045
+    python -m biped_lab.robustness --seeds 20 --tighten
 
 Learns the walk with XoL beyond the paper, with XoL by the paper's rules (Strategy 2),
 with each of them but without fixed-mode states, and by a search over plans, which
 answers no observation, on the same seeds; undisturbed, or under each disturbance; with
-the limit of the ZMP error that is walked with, or a stricter one. Then walks what was
+the limit of the ZMP error that is walked with, or stricter ones. Then walks what was
 learned, frozen, under each disturbance, some walks per seed; and so the optimal plan,
 which is known to the one who knows the undisturbed plant. Prints a table in Markdown:
 how many walks were completed, of those whose learning came to its end, and how long
@@ -17,6 +18,7 @@ learning took. Needs the extra `mujoco`.
 from __future__ import annotations
 
 import argparse
+import itertools
 import math
 import multiprocessing
 import os
@@ -53,6 +55,7 @@ from learner_node.walking.walks import FrozenWalk
 from sim_node.settings import SensorSettings
 
 MOST_EPISODES = 400
+TIGHTENING_M: Final = 0.0025
 STRATEGY_2 = "learner.xol.fixed_mode.strategy=strategy2"
 LT_3 = "learner.schedule.successes_per_subtask=3"
 SENSED = "sim.observations=sensors"
@@ -102,6 +105,27 @@ def learn(settings: RunSettings, seed: int) -> Learned | None:
     with closing(TrainingRun(settings, seed)) as run:
         run.run(MOST_EPISODES, False, lambda _: True)
         return Learned(run.episodes, run.session.greedy) if run.learned else None
+
+
+def tighten(settings: RunSettings, seed: int) -> Learned | None:
+    """Return the walk with the widest margin that a learner learns in time.
+
+    When a frozen walk has come to the end, the learner goes on with what it knows under
+    a limit of the ZMP error that is 2.5 mm stricter, and so on. Its episodes are those
+    until the last limit that it mastered.
+    """
+    widest = None
+    run = TrainingRun(settings, seed)
+    for stricter in itertools.count(1):
+        with closing(run):
+            run.run(MOST_EPISODES, False, lambda _: True)
+        if not run.learned:
+            break
+        widest = Learned(run.episodes, run.session.greedy)
+        limit_m = settings.sim.limits.zmp_error_m - stricter * TIGHTENING_M
+        limit = f"sim.limits.zmp_error_m={limit_m:.4f}"
+        run = run.under(changed_settings(settings, changes=[limit]))
+    return widest
 
 
 def search(settings: RunSettings, seed: int) -> Learned | None:
@@ -198,10 +222,14 @@ class Trial:
     """Disturbances are there while learning, too."""
     learning_limit_m: float | None = None
     """Of the ZMP error while learning, if not that of the preset."""
+    tightens: bool = False
+    """Who learns goes on under ever stricter limits."""
 
     def outcomes(self, seed: int) -> list[Outcome]:
         """Learn and walk with a seed; return what came of it, by disturbance."""
         _, settings, way = contestants(self.preset)[self.who]
+        if self.tightens and way is learn:
+            way = tighten
         if self.learning_limit_m is not None:
             way = within(self.learning_limit_m, way)
         outcomes: list[Outcome] = []
@@ -255,11 +283,18 @@ def main() -> int:
         metavar="WHO",
         help=f"only these, of {', '.join(everybody)}",
     )
-    parser.add_argument(
+    limits = parser.add_mutually_exclusive_group()
+    limits.add_argument(
         "--learning-limit",
         type=float,
         metavar="M",
         help="of the ZMP error while learning [m]; walks have the one of the preset",
+    )
+    limits.add_argument(
+        "--tighten",
+        action="store_true",
+        help="learners go on under a limit that is 2.5 mm stricter each time, for 400 "
+        "episodes in all",
     )
     parser.add_argument(
         "--while-learning",
@@ -288,6 +323,7 @@ def main() -> int:
                 options.walks,
                 options.while_learning,
                 options.learning_limit,
+                options.tighten,
             )
             of_seeds = []
             for seed, outcomes in zip(
