@@ -104,10 +104,12 @@ def test_without_its_extra_the_error_says_which(program, monkeypatch):
         library_learners.learn(read_task(program), "PPO", 1)
 
 
-def test_ppo_learns_until_it_is_good_enough(program):
+def test_ppo_learns_until_it_is_good_enough(program, tmp_path, monkeypatch):
     pytest.importorskip("stable_baselines3")
+    monkeypatch.setenv("SB3_LOGDIR", str(tmp_path / "log"))
     task = replace(read_task(program), most_episodes=500)
     learned = library_learners.learn(task, "PPO", 8201)
     assert learned.reached
     assert learned.episodes < 500
     assert learned.steps >= 2048  # the first update; nothing is tried before it
+    assert not (tmp_path / "log").exists()

@@ -22,8 +22,9 @@ def test_without_its_extra_the_error_says_which(missing, monkeypatch):
         PPO.begin(SETTINGS, OPTIONS, 1)
 
 
-def test_a_resumed_ppo_is_the_uninterrupted_one(tmp_path):
+def test_a_resumed_ppo_is_the_uninterrupted_one(tmp_path, monkeypatch):
     pytest.importorskip("stable_baselines3")
+    monkeypatch.setenv("SB3_LOGDIR", str(tmp_path / "log"))
     file = tmp_path / "ppo.npz"
     with closing(PPO.begin(SETTINGS, OPTIONS, 1)) as whole:
         for episode in range(30):  # more than the 2,048 decisions of an update
@@ -37,6 +38,7 @@ def test_a_resumed_ppo_is_the_uninterrupted_one(tmp_path):
         for _ in range(10):
             resumed.episode()
         assert resumed.figures() == figures
+    assert [*tmp_path.iterdir()] == [file]
 
 
 def test_a_file_of_another_ppo_is_refused_before_anything_is_learned(tmp_path):

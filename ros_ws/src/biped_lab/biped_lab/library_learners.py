@@ -31,6 +31,7 @@ def learn(task: ControlTask, algorithm: str, seed: int) -> Learned:
     """
     try:
         library = importlib.import_module("stable_baselines3")
+        logger = importlib.import_module("stable_baselines3.common.logger")
         torch = importlib.import_module("torch")
     except ImportError as error:
         raise MissingExtraError(
@@ -43,6 +44,8 @@ def learn(task: ControlTask, algorithm: str, seed: int) -> Learned:
     trials.reset(seed=of_trials)
     kind = {"PPO": library.PPO, "SAC": library.SAC}[algorithm]
     model = kind("MlpPolicy", make(), seed=of_learning, device="cpu")
+    # Its own logger would leave a folder per model beside temporary files.
+    model.set_logger(logger.Logger(folder=None, output_formats=[]))
 
     def trial() -> float:
         seen, _ = trials.reset()

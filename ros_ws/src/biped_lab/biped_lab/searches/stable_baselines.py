@@ -158,6 +158,7 @@ class PpoContestant:
             # Named as modules are, so that their versions are the run's.
             import stable_baselines3 as library
             import torch
+            from stable_baselines3.common.logger import Logger
         except ImportError as error:
             raise MissingExtraError(
                 "contestant 'stable_baselines': needs the extra sb3, "
@@ -183,8 +184,9 @@ class PpoContestant:
             n_steps=own.decisions,
             seed=int(draw),
             device="cpu",
-            verbose=0,
         )
+        # Its own logger would leave a folder per model beside temporary files.
+        self._model.set_logger(Logger(folder=None, output_formats=[]))
         self._log = EpisodeLog()
         self._trajectories_sha256 = ""
         self._evaluation_ticks = 0
