@@ -44,7 +44,7 @@ from biped_bringup.training import TrainingRun
 from biped_bringup.walker import Walker
 from biped_common.command_line import positive
 from biped_common.seeds import learner_stream, robot_stream, trial_stream
-from biped_common.settings import to_mapping
+from biped_common.settings import SettingsError, to_mapping
 from biped_lab.markdown import Table
 from biped_lab.searches.linear_programming import optimum
 from biped_lab.searches.plan import PlanSpace
@@ -100,6 +100,15 @@ Way = Callable[[RunSettings, int], Learned | None]
 """Learns with settings and a seed; None where that takes too long."""
 
 
+def limited(settings: RunSettings, limit_m: float) -> RunSettings:
+    """Return settings with another limit of the ZMP error [m].
+
+    Raises:
+        SettingsError: it is out of range.
+    """
+    return changed_settings(settings, changes=[f"sim.limits.zmp_error_m={limit_m:.6g}"])
+
+
 def learn(settings: RunSettings, seed: int) -> Learned | None:
     """Return the greedy walk that a learner learns, None where it does not in time."""
     with closing(TrainingRun(settings, seed)) as run:
@@ -123,8 +132,7 @@ def tighten(settings: RunSettings, seed: int) -> Learned | None:
             break
         widest = Learned(run.episodes, run.session.greedy)
         limit_m = settings.sim.limits.zmp_error_m - stricter * TIGHTENING_M
-        limit = f"sim.limits.zmp_error_m={limit_m:.4f}"
-        run = run.under(changed_settings(settings, changes=[limit]))
+        run = run.under(limited(settings, limit_m))
     return widest
 
 
@@ -183,10 +191,9 @@ def exploring(settings: RunSettings) -> RunSettings:
 
 def within(limit_m: float, way: Way) -> Way:
     """Return a way to learn that keeps the ZMP error below a limit of its own [m]."""
-    limit = f"sim.limits.zmp_error_m={limit_m}"
 
     def learn_within(settings: RunSettings, seed: int) -> Learned | None:
-        return way(changed_settings(settings, changes=[limit]), seed)
+        return way(limited(settings, limit_m), seed)
 
     return learn_within
 
@@ -310,6 +317,11 @@ def main() -> int:
         help="processes, each with a seed at a time (default: the cores there are)",
     )
     options = parser.parse_args()
+    if options.learning_limit is not None:
+        try:
+            limited(load_settings(options.preset), options.learning_limit)
+        except SettingsError as error:
+            parser.error(f"--learning-limit {error.value}: {error.allowed}")
     seeds = range(options.first, options.first + options.seeds)
     columns: dict[str, list[str]] = {}
     context = multiprocessing.get_context("spawn")
