@@ -1,9 +1,11 @@
+import itertools
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import same_color, to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -188,6 +190,21 @@ def test_no_two_arms_have_the_same_mark(tmp_path: Path) -> None:
         if line.get_linestyle() == "None"
     ]
     assert len(marks) == len(set(marks)) == 17
+
+
+@pytest.mark.parametrize("arms", [3, 5, 7, 9])
+def test_names_of_arms_do_not_run_into_one_another(tmp_path: Path, arms: int) -> None:
+    names = [f"CMA-ES, horizon grows {n}" for n in range(arms)]
+    runs = [run for name in names for run in runs_of(name, 10, 11)]
+    made = made_results(tmp_path, runs, {n: {} for n in names}, baseline=names[0])
+    figure = normalised_and_absolute(finished_runs(made), names[0], rng())
+    FigureCanvasAgg(figure).draw()
+    for axes in figure.axes:
+        labels = [label for label in axes.get_xticklabels() if label.get_text()]
+        assert len(labels) == arms
+        if labels[0].get_rotation() == 0.0:
+            extents = [label.get_window_extent() for label in labels]
+            assert all(a.x1 < b.x0 for a, b in itertools.pairwise(extents))
 
 
 def test_each_run_that_was_stopped_has_a_tick(strategy_1: FinishedRuns) -> None:

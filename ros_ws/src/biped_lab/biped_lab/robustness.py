@@ -342,7 +342,8 @@ def main() -> int:
                 seeds, pool.map(trial.outcomes, seeds), strict=True
             ):
                 of_seeds.append(outcomes)
-                print(f"{name}: seed {seed} walked", file=sys.stderr, flush=True)
+                walked = ", ".join(f"{n} after {took}" for took, n in outcomes)
+                print(f"{name}, seed {seed}: {walked}", file=sys.stderr, flush=True)
             columns[name] = list(trial.cells(of_seeds))
     rows = zip(DISTURBANCES, *columns.values(), strict=True)
     print(Table(("disturbance", *columns), tuple(rows)).markdown(), end="")

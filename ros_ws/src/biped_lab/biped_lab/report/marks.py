@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from biped_common.colours import GREY, INK, PAPER
 from biped_lab.report.arrangement import NO_FIXED_MODE
 from biped_lab.report.finished import FinishedRuns
-from biped_lab.report.theme import new_figure
+from biped_lab.report.theme import WIDTH_IN, new_figure
 from biped_lab.statistics.censored import Estimate
 
 _BESIDE = 0.55
@@ -123,8 +123,11 @@ def mark_legend(censored: bool) -> list[Artist]:
 
 
 def label_places(axes: Axes, finished: FinishedRuns, places: Sequence[str]) -> None:
-    """Name the places along the axis of the arms."""
-    if len(places) > _MOST_UPRIGHT and max(map(len, places)) > _LONG_NAME:
+    """Name the places along the axis of the arms, aslant where names have no room."""
+    upright = [wrapped(place) for place in places]
+    longest = max(len(line) for name in upright for line in name.split("\n"))
+    room_in = WIDTH_IN * axes.get_position().width / len(places)
+    if longest * _LETTER_IN > room_in:
         axes.set_xticks(
             range(len(places)),
             places,
@@ -133,7 +136,7 @@ def label_places(axes: Axes, finished: FinishedRuns, places: Sequence[str]) -> N
             rotation_mode="anchor",
         )
     else:
-        axes.set_xticks(range(len(places)), [wrapped(place) for place in places])
+        axes.set_xticks(range(len(places)), upright)
     axes.tick_params(axis="x", length=0.0)
     label = _AXES.get(finished.arrangement.axis, finished.arrangement.axis)
     without = "; none: no fixed mode" if NO_FIXED_MODE in places else ""
@@ -145,8 +148,8 @@ def label_places(axes: Axes, finished: FinishedRuns, places: Sequence[str]) -> N
 
 _AXES = {"K": "K [rewards]", "LT": "LT [successes per subtask]"}
 _FEWEST_PLACES = 4
-_MOST_UPRIGHT, _LONG_NAME = 7, 8
-"""More names than these, longer than this many letters, run into one another."""
+_LETTER_IN = 0.06
+"""Width of a letter of the labels [in], in the mean."""
 
 
 def arm_panels(
