@@ -23,9 +23,10 @@ from tests.robots import SHIPPED
 from trajectory_msgs.msg import JointTrajectory
 
 from biped_bringup.run_settings import load_settings
-from biped_bringup.training import TrainingRun
 from biped_common.timing import CONTROL_PERIOD_NS, TICKS_PER_LEARNING_TICK
 from biped_description.robot import Robot
+from biped_lab.robustness import SENSED
+from biped_lab.topic_walks import learn
 from biped_ros.messages import message_type
 from msgs_json import topics
 from msgs_json.end_cause import EndCause
@@ -39,7 +40,6 @@ TIMEOUT_S = 120.0
 LOCKSTEP = ("pace:=lockstep",)
 IN_ITS_OWN_TIME = ("pace:=realtime", "realtime_factor:=0.25")
 SERVOS_THAT_LAG = (*LOCKSTEP, "sim.servo.kind:=lag", "sim.servo.bandwidth_hz:=2.0")
-SENSED = "sim.observations=sensors"
 
 
 class Person:
@@ -378,11 +378,8 @@ def test_a_robot_that_does_not_do_what_it_is_sent_is_stopped(
 def test_the_learned_walk_holds_on_the_graph(domain, tmp_path, hardware, person):
     # As docs/real-robot.md has it: learned 15 mm stricter than it is walked.
     stricter = "sim.limits.zmp_error_m=0.05"
-    run = TrainingRun(load_settings("directed", changes=[SENSED, stricter]), seed=5)
-    run.run(200, False, lambda _: True)
-    assert run.learned
-    run.save(tmp_path / "memory.npz")
-    run.close()
+    settings = load_settings("directed", changes=[SENSED, stricter])
+    assert learn(settings, 5, tmp_path / "memory.npz")
     changes = (
         "sim.engine=robot",
         "sim.sensors.timeout_s=3",

@@ -9,7 +9,7 @@ from tests.payloads import RESULT
 
 from biped_bringup.run_settings import load_settings
 from biped_lab.robustness import SENSED
-from biped_lab.topic_walks import PACES, learn, row, walk
+from biped_lab.topic_walks import PACES, Pace, learn, row, walk
 from msgs_json.end_cause import EndCause
 
 SHORT = ("gait.steps=1", "gait.double_support_s=0.9")
@@ -38,6 +38,15 @@ def test_the_nodes_walk_whenever_the_person_says_so(learned):
 def test_a_walk_that_leaves_its_limit_is_no_walk(learned):
     (result,) = walk(learned, PACES["half of real time"], SEED, limit_m=0.01)
     assert result.end_cause is EndCause.ZMP_ERROR
+
+
+@pytest.mark.thorough
+def test_a_walk_that_the_machine_was_too_slow_for_is_walked_again(learned):
+    too_fast = Pace(("pace:=realtime", "realtime_factor:=20.0"), ())
+    results = walk(learned, too_fast, SEED, limit_m=0.065)
+    assert len(results) > 1
+    assert all(result.end_cause.from_outside for result in results[:-1])
+    assert not results[-1].completed
 
 
 @pytest.mark.thorough

@@ -20,11 +20,9 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
-import multiprocessing
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
@@ -45,6 +43,7 @@ from biped_bringup.walker import Walker
 from biped_common.command_line import positive
 from biped_common.seeds import learner_stream, robot_stream, trial_stream
 from biped_common.settings import SettingsError, to_mapping
+from biped_lab.execution import processes
 from biped_lab.markdown import Table
 from biped_lab.searches.linear_programming import optimum
 from biped_lab.searches.plan import PlanSpace
@@ -56,8 +55,6 @@ from sim_node.settings import SensorSettings
 
 MOST_EPISODES = 400
 TIGHTENING_M: Final = 0.0025
-STRATEGY_2 = "learner.xol.fixed_mode.strategy=strategy2"
-LT_3 = "learner.schedule.successes_per_subtask=3"
 SENSED = "sim.observations=sensors"
 
 
@@ -172,7 +169,12 @@ def contestants(preset: str) -> dict[str, tuple[str, RunSettings, Way]]:
         preset: of the one beyond the paper; gait and correction of all are as in it.
     """
     beyond = load_settings(preset)
-    paper = load_settings(changes=[STRATEGY_2, LT_3])
+    paper = load_settings(
+        changes=[
+            "learner.xol.fixed_mode.strategy=strategy2",
+            "learner.schedule.successes_per_subtask=3",
+        ]
+    )
     paper = replace(paper, gait=beyond.gait, correction=beyond.correction)
     return {
         "beyond": (f"XoL, preset {preset}", beyond, learn),
@@ -324,8 +326,7 @@ def main() -> int:
             parser.error(f"--learning-limit {error.value}: {error.allowed}")
     seeds = range(options.first, options.first + options.seeds)
     columns: dict[str, list[str]] = {}
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(options.workers, context) as pool:
+    with processes(options.workers) as pool:
         for who, (name, _, _) in contestants(options.preset).items():
             if who not in options.columns:
                 continue
